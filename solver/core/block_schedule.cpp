@@ -1,0 +1,55 @@
+#include "solver/core/block_schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace modelsynth {
+
+namespace {
+
+// Where blocks start along one axis.
+std::vector<std::int32_t> starts(std::int32_t extent, std::int32_t block, double overlap) {
+    std::vector<std::int32_t> result = {0};
+    const auto step =
+        std::max(std::int32_t{1}, static_cast<std::int32_t>(std::lround(block * (1.0 - overlap))));
+    while (result.back() + block < extent) {
+        result.push_back(std::min(result.back() + step, extent - block));
+    }
+    return result;
+}
+
+}  // namespace
+
+Result<std::vector<Box>> schedule_blocks(
+    const GridSize& model, const BlockLayout& layout, std::size_t block_count_max
+) {
+    const GridSize block = {
+        std::min(model.x, layout.size.x),
+        std::min(model.y, layout.size.y),
+        std::min(model.z, layout.size.z)};
+    const auto xs = starts(model.x, block.x, layout.overlap);
+    const auto ys = starts(model.y, block.y, layout.overlap);
+    const auto zs = starts(model.z, block.z, layout.overlap);
+    const double count = static_cast<double>(xs.size()) * static_cast<double>(ys.size()) *
+                         static_cast<double>(zs.size()) * layout.passes;
+    if (count > static_cast<double>(block_count_max)) {
+        return tl::unexpected(Error{
+            ErrorCode::kTooLarge,
+            "the schedule would have more than " + std::to_string(block_count_max) + " blocks",
+            {}});
+    }
+    std::vector<Box> blocks;
+    blocks.reserve(static_cast<std::size_t>(count));
+    for (std::uint32_t pass = 0; pass < layout.passes; ++pass) {
+        for (const std::int32_t x : xs) {
+            for (const std::int32_t z : zs) {
+                for (const std::int32_t y : ys) {
+                    blocks.push_back({{x, y, z}, {x + block.x, y + block.y, z + block.z}});
+                }
+            }
+        }
+    }
+    return blocks;
+}
+
+}  // namespace modelsynth

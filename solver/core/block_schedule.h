@@ -1,0 +1,26 @@
+#pragma once
+
+#include "solver/core/grid.h"
+#include "solver/core/result.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace modelsynth {
+
+// How a grid is cut into overlapping blocks (Algorithms 3.4 and 3.5).
+struct BlockLayout {
+    GridSize size = {10, 10, 10};  // cells; a block larger than the model is cut to it
+    double overlap = 0.5;          // share of a block that its successor covers again, [0, 1)
+    std::uint32_t passes = 1;      // how often the whole schedule is run
+};
+
+// The blocks in the order in which they are modified: x outermost, then z, then y (the thesis's
+// q_x, q_y, q_z, whose third axis points up). They cover every cell; the last block of an axis is
+// moved back so that it ends with the model.
+// Fails: kTooLarge when there would be more than block_count_max.
+[[nodiscard]] Result<std::vector<Box>> schedule_blocks(
+    const GridSize& model, const BlockLayout& layout, std::size_t block_count_max
+);
+
+}  // namespace modelsynth

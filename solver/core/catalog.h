@@ -1,0 +1,284 @@
+#pragma once
+
+#include "solver/core/label_set.h"
+#include "solver/core/relations.h"
+#include "solver/core/result.h"
+#include "solver/core/topology.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace modelsynth {
+
+enum class Propagation : std::uint8_t { kConsistent, kContradiction, kStopped };
+
+// The catalog C of the thesis (3.3.2): for every site the labels still possible there.
+//
+// Invariant after propagate() returned kConsistent: a label is in the catalog only if every
+// neighbour still has a label that allows it (Statement 3.6), and no site is empty. The result
+// does not depend on the order in which sites were narrowed. It is an outer bound of the ideal
+// catalog C*: what was removed cannot be, what is left may not be (Theorem 3.3.2).
+//
+// kWords is the number of words of a set when it is known at compile time, 0 when it is not.
+// Cost: narrow O(words); propagate O(removed labels * arcs) rows at most, no allocation once warm.
+// Thread-safety: one thread at a time; topology and relations are only read.
+template <Topology T, std::size_t kWords>
+class Catalog {
+  public:
+    using Mark = std::size_t;
+
+    // Requires: topology and relations outlive the catalog.
+    Catalog(const T& topology, const Relations& relations)
+        : topology_(topology),
+          relations_(relations),
+          words_(kWords == 0 ? relations.words() : kWords),
+          sets_(topology.site_count() * words_),
+          queued_(topology.site_count()),
+          saved_(topology.site_count()),
+          support_(relations.count() * words_) {
+        check(words_ == relations.words(), "a catalog of another width than its relations");
+        queue_.reserve(topology.site_count());
+    }
+
+    [[nodiscard]] std::size_t site_count() const { return queued_.size(); }
+
+    [[nodiscard]] std::size_t words() const { return kWords == 0 ? words_ : kWords; }
+
+    [[nodiscard]] std::span<const Word> labels(Site site) const {
+        return {sets_.data() + site * words(), words()};
+    }
+
+    [[nodiscard]] std::span<const Word> all_labels() const { return sets_; }
+
+    [[nodiscard]] bool contains(Site site, Label label) const {
+        return (labels(site)[label / kWordBits] >> (label % kWordBits) & 1) != 0;
+    }
+
+    // Puts back a state taken from all_labels() of a catalog of the same shape, or any sets.
+    // Nothing is queued: the state is taken to be what propagation left.
+    void restore(std::span<const Word> sets) {
+        std::copy(sets.begin(), sets.end(), sets_.begin());
+        forget_queue();
+        forget_trail();
+    }
+
+    // The catalog without knowledge: the same set at every site.
+    void fill(std::span<const Word> set) {
+        for (std::size_t site = 0; site < site_count(); ++site) {
+            std::copy(
+                set.begin(), set.end(), sets_.begin() + static_cast<std::ptrdiff_t>(site * words())
+            );
+        }
+        forget_queue();
+        forget_trail();
+    }
+
+    // Keeps only the labels of `allowed` at the site; false when none is left.
+    [[nodiscard]] bool narrow(Site site, const Word* allowed) {
+        Word* set = sets_.data() + site * words();
+        Word removed = 0;
+        for (std::size_t word = 0; word < words(); ++word) {
+            removed |= set[word] & ~allowed[word];
+        }
+        if (removed == 0) {
+            return true;
+        }
+        save(site);
+        Word left = 0;
+        for (std::size_t word = 0; word < words(); ++word) {
+            set[word] &= allowed[word];
+            left |= set[word];
+        }
+        enqueue(site);
+        if (left == 0) {
+            emptied_ = site;
+        }
+        return left != 0;
+    }
+
+    // Leaves one label at the site (Statement 3.7).
+    // Requires: the label is in the catalog there (checked).
+    void assign(Site site, Label label) {
+        check(contains(site, label), "a label that is not in the catalog was assigned");
+        save(site);
+        Word* set = sets_.data() + site * words();
+        std::fill(set, set + words(), Word{0});
+        set[label / kWordBits] = Word{1} << (label % kWordBits);
+        enqueue(site);
+    }
+
+    // Takes one label away; false when none is left.
+    [[nodiscard]] bool remove(Site site, Label label) {
+        save(site);
+        Word* set = sets_.data() + site * words();
+        set[label / kWordBits] &= ~(Word{1} << (label % kWordBits));
+        enqueue(site);
+        if (count_labels(labels(site)) == 0) {
+            emptied_ = site;
+            return false;
+        }
+        return true;
+    }
+
+    // Every site is looked at by the next propagate(). For a state that no propagation has seen.
+    void enqueue_all() {
+        for (std::size_t site = 0; site < site_count(); ++site) {
+            enqueue(static_cast<Site>(site));
+        }
+    }
+
+    // Removes what no neighbour supports until nothing changes (Algorithms 3.2 and 3.3).
+    // kContradiction: some site lost its last label; emptied_site() tells which, and the catalog
+    // is good only for undo() or restore(). kStopped: `stop` was requested; likewise.
+    [[nodiscard]] Propagation propagate(const std::stop_token& stop) {
+        constexpr std::size_t kStopInterval = 1024;
+        std::size_t looked_at = 0;
+        for (std::size_t head = 0; head < queue_.size(); ++head) {
+            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
+                forget_queue();
+                return Propagation::kStopped;
+            }
+            const Site site = queue_[head];
+            queued_[site] = 0;
+            collect_support(site);
+            bool consistent = true;
+            topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
+                if (consistent) {
+                    consistent = narrow(neighbour, support_.data() + relation * words());
+                }
+            });
+            if (!consistent) {
+                forget_queue();
+                return Propagation::kContradiction;
+            }
+            if (head > site_count()) {  // keeps the queue as short as the model
+                queue_.erase(
+                    queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(head) + 1
+                );
+                head = static_cast<std::size_t>(-1);
+            }
+        }
+        queue_.clear();
+        return Propagation::kConsistent;
+    }
+
+    // The site that lost its last label in the last contradiction.
+    [[nodiscard]] Site emptied_site() const { return emptied_; }
+
+    // From mark() on, changes are kept on a trail so that undo(mark) can take them back. Marks
+    // nest; undo of an outer mark undoes the inner ones.
+    [[nodiscard]] Mark mark() {
+        ++marks_;
+        ++stamp_;
+        return trail_sites_.size();
+    }
+
+    void undo(Mark mark) {
+        while (trail_sites_.size() > mark) {
+            const Site site = trail_sites_.back();
+            trail_sites_.pop_back();
+            std::copy(
+                trail_words_.end() - static_cast<std::ptrdiff_t>(words()),
+                trail_words_.end(),
+                sets_.begin() + static_cast<std::ptrdiff_t>(site * words())
+            );
+            trail_words_.resize(trail_words_.size() - words());
+            note_change(site);
+        }
+        forget_queue();
+        release();
+    }
+
+    // Keeps the changes since the innermost mark, for good when it was the outermost.
+    void keep() { release(); }
+
+    // From now on the sites that change are listed in changed(), some more than once, undone
+    // changes too, until clear_changed().
+    void track_changes() { tracking_ = true; }
+
+    [[nodiscard]] std::span<const Site> changed() const { return changed_; }
+
+    void clear_changed() { changed_.clear(); }
+
+  private:
+    // support_[r] = the labels that some label left at the site allows along relation r.
+    void collect_support(Site site) {
+        const std::size_t length = relations_.count() * words();
+        std::fill(support_.begin(), support_.end(), Word{0});
+        Word* support = support_.data();
+        for_each_label(labels(site), [&](Label label) {
+            const Word* row = relations_.row_data(label);
+            for (std::size_t word = 0; word < length; ++word) {
+                support[word] |= row[word];
+            }
+        });
+    }
+
+    void save(Site site) {
+        note_change(site);
+        if (marks_ == 0 || saved_[site] == stamp_) {
+            return;
+        }
+        saved_[site] = stamp_;
+        trail_sites_.push_back(site);
+        const Word* set = sets_.data() + site * words();
+        trail_words_.insert(trail_words_.end(), set, set + words());
+    }
+
+    void enqueue(Site site) {
+        if (queued_[site] == 0) {
+            queued_[site] = 1;
+            queue_.push_back(site);
+        }
+    }
+
+    void note_change(Site site) {
+        if (tracking_) {
+            changed_.push_back(site);
+        }
+    }
+
+    void forget_queue() {
+        for (const Site site : queue_) {
+            queued_[site] = 0;
+        }
+        queue_.clear();
+    }
+
+    void release() {
+        check(marks_ > 0, "a mark was released twice");
+        ++stamp_;  // what an outer mark has not saved yet is saved anew
+        if (--marks_ == 0) {
+            trail_sites_.clear();
+            trail_words_.clear();
+        }
+    }
+
+    void forget_trail() {
+        marks_ = 0;
+        trail_sites_.clear();
+        trail_words_.clear();
+    }
+
+    const T& topology_;
+    const Relations& relations_;
+    std::size_t words_;
+    std::vector<Word> sets_;
+    std::vector<Site> queue_;
+    std::vector<std::uint8_t> queued_;
+    std::vector<Site> trail_sites_;
+    std::vector<Word> trail_words_;
+    std::vector<std::uint64_t> saved_;  // the stamp under which the site is on the trail
+    std::uint64_t stamp_ = 0;
+    std::size_t marks_ = 0;
+    std::vector<Word> support_;
+    std::vector<Site> changed_;
+    bool tracking_ = false;
+    Site emptied_ = 0;
+};
+
+}  // namespace modelsynth

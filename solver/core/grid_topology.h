@@ -1,0 +1,112 @@
+#pragma once
+
+#include "solver/core/grid.h"
+#include "solver/core/topology.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace modelsynth {
+
+// Which axes of a grid close on themselves.
+struct Periodic {
+    bool x = false;
+    bool y = false;
+    bool z = false;
+};
+
+// The implicit topology of a grid: a site per cell in the order of flat arrays, an arc to each of
+// the six neighbours, relations numbered as the directions.
+// Cost: one byte a cell. Thread-safe.
+class GridTopology {
+  public:
+    // Requires: every extent positive and fewer than 2^32 cells (checked).
+    explicit GridTopology(const GridSize& size, Periodic periodic = {});
+
+    [[nodiscard]] std::size_t site_count() const { return size_.cell_count(); }
+
+    [[nodiscard]] const GridSize& size() const { return size_; }
+
+    template <class Visit>
+    void for_each_arc(Site site, Visit visit) const {
+        const std::uint8_t arcs = arcs_[site];
+        for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
+            if ((arcs >> direction & 1) != 0) {
+                visit(
+                    static_cast<Site>(static_cast<std::int64_t>(site) + step(site, direction)),
+                    static_cast<RelationId>(direction)
+                );
+            }
+        }
+    }
+
+  private:
+    // The distance to the neighbour: one step on, or a whole row back where the axis is closed.
+    [[nodiscard]] std::int64_t step(Site site, std::size_t direction) const {
+        if (wraps_.empty() || (wraps_[site] >> direction & 1) == 0) {
+            return steps_[direction];
+        }
+        return wrapped_steps_[direction];
+    }
+
+    GridSize size_;
+    std::array<std::int64_t, kDirectionCount> steps_ = {};
+    std::array<std::int64_t, kDirectionCount> wrapped_steps_ = {};
+    std::vector<std::uint8_t> arcs_;   // bit d: there is a neighbour in direction d
+    std::vector<std::uint8_t> wraps_;  // bit d: that neighbour is across the seam; empty: nowhere
+};
+
+// A box of a grid, as a part of it.
+class GridPart {
+  public:
+    using Inner = GridTopology;
+
+    // Requires: box inside size and not empty (checked).
+    GridPart(const GridSize& size, Periodic periodic, const Box& box);
+
+    [[nodiscard]] const GridTopology& inner() const { return inner_; }
+
+    [[nodiscard]] Site global(Site site) const {
+        const Cell cell = inner_.size().cell(site);
+        return static_cast<Site>(
+            size_.index({cell.x + box_.min.x, cell.y + box_.min.y, cell.z + box_.min.z})
+        );
+    }
+
+    template <class Visit>
+    void for_each_outward_arc(Visit visit) const {
+        for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
+            Cell outside_offset;
+            if (!has_outside(direction, outside_offset)) {
+                continue;
+            }
+            for_each_cell(face(direction), [&](const Cell& cell) {
+                const Cell inside = {cell.x - box_.min.x, cell.y - box_.min.y, cell.z - box_.min.z};
+                const Cell outside = {
+                    cell.x + outside_offset.x,
+                    cell.y + outside_offset.y,
+                    cell.z + outside_offset.z};
+                visit(
+                    static_cast<Site>(inner_.size().index(inside)),
+                    static_cast<Site>(size_.index(outside)),
+                    static_cast<RelationId>(direction)
+                );
+            });
+        }
+    }
+
+  private:
+    // The layer of the box's cells on the side of the direction.
+    [[nodiscard]] Box face(std::size_t direction) const;
+    // Whether cells of the whole lie beyond that face, and how far from the face's cells.
+    [[nodiscard]] bool has_outside(std::size_t direction, Cell& offset) const;
+
+    GridSize size_;
+    Periodic periodic_;
+    Box box_;
+    GridTopology inner_;
+};
+
+}  // namespace modelsynth

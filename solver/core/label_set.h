@@ -1,0 +1,103 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace modelsynth {
+
+// A label names what may stand at a site: a model piece of a grid, a vertex figure, ... Labels of
+// one problem are numbered 0 ... label_count-1.
+using Label = std::uint16_t;
+
+// The most labels one problem may have; the last value is kept free to mean "none".
+inline constexpr std::size_t kLabelCountMax = 65535;
+inline constexpr Label kNoLabel = 65535;
+
+// Sets of labels are rows of 64-bit words, label l at bit l % 64 of word l / 64. Bits past the
+// last label are zero. The catalog keeps its sets in one flat array and works on such rows.
+using Word = std::uint64_t;
+inline constexpr std::size_t kWordBits = 64;
+
+constexpr std::size_t words_for(std::size_t label_count) {
+    return (label_count + kWordBits - 1) / kWordBits;
+}
+
+// Calls visit(Label) for every label of the set, in rising order.
+template <class Visit>
+constexpr void for_each_label(std::span<const Word> set, Visit visit) {
+    for (std::size_t word = 0; word < set.size(); ++word) {
+        for (Word bits = set[word]; bits != 0; bits &= bits - 1) {
+            visit(static_cast<Label>(
+                word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits))
+            ));
+        }
+    }
+}
+
+constexpr std::size_t count_labels(std::span<const Word> set) {
+    std::size_t count = 0;
+    for (const Word word : set) {
+        count += static_cast<std::size_t>(std::popcount(word));
+    }
+    return count;
+}
+
+// A set that owns its words: for boundaries, constraints and whatever is not in a hot loop.
+// A value; distinct objects may be used from distinct threads.
+class LabelSet {
+  public:
+    LabelSet() = default;
+
+    explicit LabelSet(std::size_t label_count)
+        : label_count_(label_count), words_(words_for(label_count)) {}
+
+    static LabelSet all(std::size_t label_count) {
+        LabelSet set(label_count);
+        for (std::size_t label = 0; label < label_count; ++label) {
+            set.insert(static_cast<Label>(label));
+        }
+        return set;
+    }
+
+    void insert(Label label) { words_[label / kWordBits] |= Word{1} << (label % kWordBits); }
+
+    void erase(Label label) { words_[label / kWordBits] &= ~(Word{1} << (label % kWordBits)); }
+
+    [[nodiscard]] bool contains(Label label) const {
+        return label < label_count_ &&
+               ((words_[label / kWordBits] >> (label % kWordBits)) & 1) != 0;
+    }
+
+    [[nodiscard]] bool empty() const { return count() == 0; }
+
+    [[nodiscard]] std::size_t count() const { return count_labels(words_); }
+
+    [[nodiscard]] std::size_t label_count() const { return label_count_; }
+
+    [[nodiscard]] std::span<const Word> words() const { return words_; }
+
+    LabelSet& operator&=(const LabelSet& other) {
+        for (std::size_t word = 0; word < words_.size(); ++word) {
+            words_[word] &= other.words_[word];
+        }
+        return *this;
+    }
+
+    LabelSet& operator|=(const LabelSet& other) {
+        for (std::size_t word = 0; word < words_.size(); ++word) {
+            words_[word] |= other.words_[word];
+        }
+        return *this;
+    }
+
+    friend bool operator==(const LabelSet&, const LabelSet&) = default;
+
+  private:
+    std::size_t label_count_ = 0;
+    std::vector<Word> words_;
+};
+
+}  // namespace modelsynth

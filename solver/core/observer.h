@@ -1,0 +1,34 @@
+#pragma once
+
+#include "solver/core/grid.h"
+#include "solver/core/label_set.h"
+
+#include <cstdint>
+#include <span>
+
+namespace modelsynth {
+
+// What became of one block.
+struct BlockReport {
+    std::uint32_t index = 0;  // of the schedule, from 0
+    std::uint32_t blocks_total = 0;
+    Box region;
+    bool accepted = false;
+    std::uint32_t attempts = 0;
+    // The labels of the whole model after the block, valid during the call.
+    std::span<const Label> model;
+};
+
+// Listens to a synthesis. Called on the thread that solves, in the order of the schedule; what it
+// does delays the solver, so it hands on and returns. It may throw nothing.
+class Observer {
+  public:
+    virtual ~Observer() = default;
+
+    // Once, before the first block: the initial model stands.
+    virtual void on_start(std::uint32_t blocks_total, std::span<const Label> initial_model) = 0;
+
+    virtual void on_block(const BlockReport& report) = 0;
+};
+
+}  // namespace modelsynth

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace modelsynth {
+
+// What went wrong, for a program to branch on.
+enum class ErrorCode : std::uint8_t {
+    kInvalidArgument,  // the input cannot be done as it stands
+    kTooLarge,         // a named limit is passed
+    kContradiction,    // proved impossible
+    kGaveUp,           // not found within the budget; may exist
+    kCancelled,        // the stop token was requested
+    kInternal,         // a fault of ours
+};
+
+// One fault of an input and its place: an RFC 6901 JSON Pointer relative to the input checked,
+// so that a caller can put its own prefix before it. Empty: the whole input.
+struct Fault {
+    std::string pointer;
+    std::string detail;
+};
+
+// An error with one sentence for a person and, for bad input, every fault that was found.
+struct Error {
+    ErrorCode code = ErrorCode::kInternal;
+    std::string message;
+    std::vector<Fault> faults = {};
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+// Ends the program when `condition` does not hold. For faults of our own code only; input is
+// answered with a Result. Always on: a wrong model is worse than none.
+void check(bool condition, const char* why);
+
+}  // namespace modelsynth

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "solver/core/relations.h"
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+
+namespace modelsynth {
+
+// A site takes one label. Sites of one topology are numbered 0 ... site_count()-1.
+using Site = std::uint32_t;
+
+// What the search runs on: sites joined by arcs, each arc of a kind (its relation).
+//
+// for_each_arc(site, visit) calls visit(Site far_end, RelationId) for every arc at the site. Both
+// ends see the arc, with relations that are each other's reverse. The number of visits and their
+// order are the same every time.
+template <class T>
+concept Topology = requires(const T& topology, Site site, void (*visit)(Site, RelationId)) {
+    { topology.site_count() } -> std::convertible_to<std::size_t>;
+    topology.for_each_arc(site, visit);
+};
+
+// A part of a topology that is changed while the rest stands still: its sites numbered anew from
+// 0, the arcs among them, and the arcs that lead out of it.
+//
+// global(site) is the site's number in the whole; for_each_outward_arc(visit) calls
+// visit(Site inside, Site outside_in_the_whole, RelationId seen_from_inside).
+template <class T>
+concept TopologyPart = Topology<typename T::Inner> &&
+    requires(const T& part, Site site, void (*visit)(Site, Site, RelationId)) {
+    { part.inner() } -> std::convertible_to<const typename T::Inner&>;
+    { part.global(site) } -> std::convertible_to<Site>;
+    part.for_each_outward_arc(visit);
+};
+
+}  // namespace modelsynth

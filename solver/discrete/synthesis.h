@@ -1,0 +1,45 @@
+#pragma once
+
+#include "solver/core/observer.h"
+#include "solver/core/result.h"
+#include "solver/discrete/example.h"
+#include "solver/discrete/parameters.h"
+
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+namespace modelsynth::discrete {
+
+struct SynthesisStats {
+    std::uint32_t blocks_accepted = 0;
+    std::uint32_t blocks_reverted = 0;
+    // Share of cells whose label differs from the initial model; 1 where there was none.
+    double changed = 0;
+};
+
+struct Synthesis {
+    GridSize size;
+    std::vector<Label> labels;  // as Example::cells
+    SynthesisStats stats;
+};
+
+// More blocks than this are refused.
+inline constexpr std::size_t kBlockCountMax = 1'000'000;
+
+// A model of the size asked for in which any two neighbours are neighbours in the example
+// (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
+// Requires: defaults filled in and find_faults() empty (checked).
+// Ensures:  equal arguments give equal labels and equal reports, on any machine.
+// Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
+//           block and within one propagation.
+// Cost:     O(cells) blocks of constant size; memory: 4 bytes a cell and one block's catalog.
+[[nodiscard]] Result<Synthesis> synthesise(
+    const Example& example,
+    const Parameters& parameters,
+    std::uint64_t seed,
+    Observer& observer,
+    const std::stop_token& stop
+);
+
+}  // namespace modelsynth::discrete

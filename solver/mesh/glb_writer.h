@@ -1,0 +1,30 @@
+#pragma once
+
+#include "solver/core/result.h"
+#include "solver/mesh/scene.h"
+
+#include <cstdint>
+#include <string>
+
+namespace modelsynth {
+
+// How a scene becomes glTF.
+enum class GlbProfile : std::uint8_t {
+    kNodes,      // core glTF, a node per instance; every reader opens it
+    kInstanced,  // EXT_mesh_gpu_instancing, required; a node per mesh, turn and group; small
+    kMerged,     // core glTF, one mesh per group with a primitive per material; large
+};
+
+struct GlbOptions {
+    GlbProfile profile = GlbProfile::kNodes;
+    // Larger files are refused; glTF's own limit is 4 GiB, viewers stop near 2.
+    std::size_t bytes_max = std::size_t{1} << 30;
+};
+
+// The scene as binary glTF 2.0. Deterministic; equal scenes give equal bytes.
+// Meshes that no instance uses are left out. With kNodes the instance nodes carry
+// `extras.piece`, their name.
+// Fails: kTooLarge. Cost: O(instances), for kMerged O(triangles). Thread-safe.
+[[nodiscard]] Result<std::string> write_glb(const Scene& scene, const GlbOptions& options = {});
+
+}  // namespace modelsynth
