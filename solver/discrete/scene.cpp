@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace modelsynth::discrete {
 
@@ -22,7 +23,7 @@ Scene empty_scene(const Example& example) {
 Instance place(const Example& example, Label label, double x, double y, double z) {
     const Piece& piece = example.pieces[label];
     return {
-        *piece.mesh,
+        piece.mesh.value_or(kNoMesh),
         label,
         {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)},
         piece.quarter_turns};
@@ -70,17 +71,13 @@ Scene make_piece_sheet(const Example& example) {
     Scene scene = empty_scene(example);
     const auto columns =
         static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(example.pieces.size()))));
-    std::size_t drawn = 0;
+    SceneGroup sheet;
     for (std::size_t label = 0; label < example.pieces.size(); ++label) {
-        if (!example.pieces[label].mesh) {
-            continue;
-        }
-        const double x = static_cast<double>(drawn % columns) * example.cell[0] * 1.5;
-        const double z = static_cast<double>(drawn / columns) * example.cell[2] * 1.5;
-        const Instance instance = place(example, static_cast<Label>(label), x, 0, z);
-        scene.groups.push_back({example.pieces[label].name, {instance}});
-        ++drawn;
+        const double x = static_cast<double>(label % columns) * example.cell[0] * 1.5;
+        const double z = static_cast<double>(label / columns) * example.cell[2] * 1.5;
+        sheet.instances.push_back(place(example, static_cast<Label>(label), x, 0, z));
     }
+    scene.groups.push_back(std::move(sheet));
     return scene;
 }
 

@@ -16,7 +16,8 @@ namespace modelsynth::discrete {
     const Example& example, const GridSize& size, std::span<const Label> labels, const Box& region
 );
 
-// One piece of each kind that is drawn, side by side, a group per piece named as it.
+// One piece of each kind, side by side; pieces that draw nothing have a place all the same. For
+// GlbOptions::named_nodes and profile kNodes.
 [[nodiscard]] Scene make_piece_sheet(const Example& example);
 
 }  // namespace modelsynth::discrete

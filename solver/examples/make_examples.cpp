@@ -30,8 +30,10 @@ class Silent final : public modelsynth::Observer {
     void on_block(const modelsynth::BlockReport&) override {}
 };
 
-void write_file(const std::string& path, const modelsynth::Scene& scene) {
-    const auto glb = modelsynth::write_glb(scene);
+void write_file(const std::string& path, const modelsynth::Scene& scene, bool named_nodes = false) {
+    modelsynth::GlbOptions options;
+    options.named_nodes = named_nodes;
+    const auto glb = modelsynth::write_glb(scene, options);
     if (!glb) {
         std::fprintf(stderr, "%s: %s\n", path.c_str(), glb.error().message.c_str());
         std::exit(1);
@@ -124,7 +126,9 @@ int main(int argc, char** argv) {
             directory + "/" + example->name + ".glb",
             make_scene(*example, example->size, example->cells, Box::whole(example->size))
         );
-        write_file(directory + "/" + example->name + ".pieces.glb", make_piece_sheet(*example));
+        write_file(
+            directory + "/" + example->name + ".pieces.glb", make_piece_sheet(*example), true
+        );
         GridSize size;
         if (argc > 3 && std::sscanf(argv[3], "%dx%dx%d", &size.x, &size.y, &size.z) == 3) {
             const int seeds = argc > 4 ? std::atoi(argv[4]) : 1;

@@ -328,7 +328,9 @@ std::vector<bool> used_meshes(const Scene& scene) {
     std::vector<bool> used(scene.kit->meshes.size());
     for (const SceneGroup& group : scene.groups) {
         for (const Instance& instance : group.instances) {
-            used[instance.mesh] = true;
+            if (instance.mesh != kNoMesh) {
+                used[instance.mesh] = true;
+            }
         }
     }
     return used;
@@ -362,6 +364,12 @@ void write_group_node(Document& document, const std::string& name, std::uint32_t
     if (count == 0) {
         return;
     }
+    if (name.empty()) {
+        for (std::uint32_t node = first; node < first + count; ++node) {
+            document.roots.push_back(node);
+        }
+        return;
+    }
     document.roots.push_back(document.nodes.begin());
     document.nodes.key("name");
     document.nodes.string(name);
@@ -370,7 +378,7 @@ void write_group_node(Document& document, const std::string& name, std::uint32_t
     document.nodes.end();
 }
 
-void write_nodes(Document& document) {
+void write_nodes(Document& document, bool named) {
     const std::vector<int> mesh_numbers = write_meshes(document);
     std::vector<std::string> names;
     for (const std::string& name : document.scene.names) {
@@ -381,8 +389,14 @@ void write_nodes(Document& document) {
         const std::uint32_t first = nodes.count();
         for (const Instance& instance : group.instances) {
             nodes.begin();
-            nodes.key("mesh");
-            nodes.number(mesh_numbers[instance.mesh]);
+            if (named) {
+                nodes.key("name");
+                nodes.raw(names[instance.name].c_str());
+            }
+            if (instance.mesh != kNoMesh) {
+                nodes.key("mesh");
+                nodes.number(mesh_numbers[instance.mesh]);
+            }
             nodes.key("translation");
             nodes.vector(instance.position);
             if (instance.quarter_turns % 4 != 0) {
@@ -557,7 +571,7 @@ Result<std::string> write_glb(const Scene& scene, const GlbOptions& options) {
     bool fits = true;
     switch (options.profile) {
         case GlbProfile::kNodes:
-            write_nodes(document);
+            write_nodes(document, options.named_nodes);
             break;
         case GlbProfile::kInstanced:
             write_instanced(document);

@@ -17,6 +17,9 @@ enum class GlbProfile : std::uint8_t {
 
 struct GlbOptions {
     GlbProfile profile = GlbProfile::kNodes;
+    // kNodes: instance nodes are named as their piece. Names cost bytes, so models have them as
+    // extras only.
+    bool named_nodes = false;
     // Larger files are refused; glTF's own limit is 4 GiB, viewers stop near 2.
     std::size_t bytes_max = std::size_t{1} << 30;
 };

@@ -9,6 +9,9 @@
 
 namespace modelsynth {
 
+// Instance::mesh of something that has a place and a name but nothing to draw.
+inline constexpr std::uint32_t kNoMesh = 0xFFFFFFFF;
+
 // One mesh of the kit put somewhere.
 struct Instance {
     std::uint32_t mesh = 0;
@@ -17,7 +20,8 @@ struct Instance {
     std::uint8_t quarter_turns = 0;  // about the vertical axis, counter-clockwise from above
 };
 
-// Instances that lie together, so that a viewer can cull them as one.
+// Instances that lie together, so that a viewer can cull them as one. A group without a name is
+// no group: its instances stand alone.
 struct SceneGroup {
     std::string name;
     std::vector<Instance> instances;

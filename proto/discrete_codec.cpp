@@ -1,0 +1,290 @@
+#include "proto/discrete_codec.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace modelsynth::proto {
+
+namespace {
+
+using discrete::BoundaryKind;
+using discrete::Parameters;
+using discrete::SideBoundary;
+
+void read_size(const Value& value, const RequestLimits& limits, Parameters& parameters) {
+    const auto size = value.cell(1, limits.extent_max);
+    if (!size) {
+        return;
+    }
+    parameters.size = GridSize{size->x, size->y, size->z};
+    if (parameters.size->cell_count() > limits.model_cells_max) {
+        value.fault(
+            "asks for " + std::to_string(parameters.size->cell_count()) +
+            " cells; the limit model_cells_max is " + std::to_string(limits.model_cells_max)
+        );
+    }
+}
+
+void read_blocks(const Value& value, const RequestLimits& limits, Parameters& parameters) {
+    if (value.json().is_null()) {
+        parameters.blocks = std::optional<discrete::Blocks>();
+        return;
+    }
+    discrete::Blocks blocks;
+    ObjectReader reader(value);
+    if (const auto size = reader.optional("size")) {
+        if (const auto cell = size->cell(1, limits.block_extent_max)) {
+            blocks.layout.size = {cell->x, cell->y, cell->z};
+        }
+    }
+    if (const auto overlap = reader.optional("overlap")) {
+        blocks.layout.overlap = overlap->number(0, 0.95).value_or(blocks.layout.overlap);
+    }
+    if (const auto passes = reader.optional("passes")) {
+        blocks.layout.passes = static_cast<std::uint32_t>(passes->integer(1, 100).value_or(1));
+    }
+    if (const auto attempts = reader.optional("attempts")) {
+        blocks.attempts = static_cast<std::uint32_t>(attempts->integer(1, 1000).value_or(1));
+    }
+    reader.finish();
+    parameters.blocks = blocks;
+}
+
+void read_weights(const Value& value, const RequestLimits& limits, Parameters& parameters) {
+    if (!value.json().is_object()) {
+        if (value.json().is_string()) {
+            if (const auto rule = value.one_of({"uniform", "example"})) {
+                parameters.weights =
+                    *rule == 0 ? discrete::WeightRule::kUniform : discrete::WeightRule::kExample;
+            }
+        } else {
+            value.fault("must be \"uniform\", \"example\" or an object of weights by piece");
+        }
+        return;
+    }
+    discrete::WeightList list;
+    for (const auto& [name, json] : value.json().items()) {
+        const Value weight(json, value.pointer() + "/" + pointer_part(name), value.faults());
+        if (name.size() > limits.name_bytes_max) {
+            weight.fault("the name is too long");
+        } else if (const auto number = weight.number(0, 1e6)) {
+            list.emplace_back(name, *number);
+        }
+    }
+    parameters.weights = std::move(list);
+}
+
+std::optional<Box> read_box(const Value& value, const RequestLimits& limits) {
+    ObjectReader reader(value);
+    const auto min_value = reader.required("min");
+    const auto max_value = reader.required("max");
+    reader.finish();
+    const auto min = min_value ? min_value->cell(0, limits.extent_max) : std::nullopt;
+    const auto max = max_value ? max_value->cell(0, limits.extent_max) : std::nullopt;
+    if (!min || !max) {
+        return std::nullopt;
+    }
+    if (max->x <= min->x || max->y <= min->y || max->z <= min->z) {
+        value.fault("max is exclusive and must be above min along every axis");
+        return std::nullopt;
+    }
+    return Box{*min, *max};
+}
+
+void read_constraint(const Value& value, const RequestLimits& limits, Parameters& parameters) {
+    discrete::Constraint constraint;
+    ObjectReader reader(value);
+    if (const auto kind = reader.required("kind")) {
+        if (const auto index = kind->one_of({"fixed", "forbidden"})) {
+            constraint.kind = *index == 0 ? discrete::ConstraintKind::kFixed
+                                          : discrete::ConstraintKind::kForbidden;
+        }
+    }
+    if (const auto pieces = reader.required("pieces")) {
+        constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_bytes_max)
+                                .value_or(constraint.pieces);
+    }
+    if (const auto box = reader.optional("box")) {
+        constraint.box = read_box(*box, limits);
+    }
+    if (const auto cells = reader.optional("cells")) {
+        if (const auto values = cells->array(1, 100'000)) {
+            for (const Value& cell : *values) {
+                if (const auto place = cell.cell(0, limits.extent_max)) {
+                    constraint.cells.push_back(*place);
+                }
+            }
+        }
+    }
+    reader.finish();
+    parameters.constraints.push_back(std::move(constraint));
+}
+
+const char* order_name(Order order) {
+    switch (order) {
+        case Order::kScan:
+            return "scan";
+        case Order::kMinEntropy:
+            return "min_entropy";
+        case Order::kRandom:
+            return "random";
+    }
+    return "scan";
+}
+
+OrderedJson write_cell(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
+
+OrderedJson write_blocks(const std::optional<discrete::Blocks>& blocks) {
+    if (!blocks) {
+        return nullptr;
+    }
+    const BlockLayout& layout = blocks->layout;
+    return {
+        {"size", OrderedJson::array({layout.size.x, layout.size.y, layout.size.z})},
+        {"overlap", layout.overlap},
+        {"passes", layout.passes},
+        {"attempts", blocks->attempts}};
+}
+
+OrderedJson write_weights(const discrete::Weights& weights) {
+    if (const auto* rule = std::get_if<discrete::WeightRule>(&weights)) {
+        return *rule == discrete::WeightRule::kUniform ? "uniform" : "example";
+    }
+    OrderedJson list = OrderedJson::object();
+    for (const auto& [name, weight] : std::get<discrete::WeightList>(weights)) {
+        list[name] = weight;
+    }
+    return list;
+}
+
+OrderedJson write_constraint(const discrete::Constraint& constraint) {
+    OrderedJson written = {
+        {"kind", constraint.kind == discrete::ConstraintKind::kFixed ? "fixed" : "forbidden"},
+        {"pieces", constraint.pieces}};
+    if (constraint.box) {
+        written["box"] = {
+            {"min", write_cell(constraint.box->min)}, {"max", write_cell(constraint.box->max)}};
+    }
+    if (!constraint.cells.empty()) {
+        OrderedJson cells = OrderedJson::array();
+        for (const Cell& cell : constraint.cells) {
+            cells.push_back(write_cell(cell));
+        }
+        written["cells"] = std::move(cells);
+    }
+    return written;
+}
+
+// How many blocks a schedule has is known here, and refusing is cheaper than scheduling.
+void check_block_count(
+    const Value& value, const RequestLimits& limits, const Parameters& parameters
+) {
+    if (!parameters.size || !parameters.blocks || !*parameters.blocks) {
+        return;
+    }
+    if (!schedule_blocks(*parameters.size, (*parameters.blocks)->layout, limits.blocks_max)) {
+        value.faults().add(
+            value.pointer() + "/blocks",
+            "the schedule would have more blocks than the limit blocks_max, " +
+                std::to_string(limits.blocks_max)
+        );
+    }
+}
+
+}  // namespace
+
+std::optional<SideBoundary> read_side(const Value& value, const RequestLimits& limits) {
+    if (value.json().is_array()) {
+        auto pieces = value.strings(1, limits.pieces_max, limits.name_bytes_max);
+        if (!pieces) {
+            return std::nullopt;
+        }
+        return SideBoundary{BoundaryKind::kPieces, std::move(*pieces)};
+    }
+    auto text = value.string(limits.name_bytes_max);
+    if (!text) {
+        return std::nullopt;
+    }
+    if (*text == "free") {
+        return SideBoundary{BoundaryKind::kFree, {}};
+    }
+    if (*text == "example") {
+        return SideBoundary{BoundaryKind::kExample, {}};
+    }
+    if (*text == "periodic") {
+        return SideBoundary{BoundaryKind::kPeriodic, {}};
+    }
+    return SideBoundary{BoundaryKind::kPieces, {std::move(*text)}};
+}
+
+OrderedJson write_side(const SideBoundary& side) {
+    switch (side.kind) {
+        case BoundaryKind::kFree:
+            return "free";
+        case BoundaryKind::kExample:
+            return "example";
+        case BoundaryKind::kPeriodic:
+            return "periodic";
+        case BoundaryKind::kPieces:
+            return side.pieces;
+    }
+    return "free";
+}
+
+Parameters read_parameters(const Value& value, const RequestLimits& limits) {
+    Parameters parameters;
+    ObjectReader reader(value);
+    if (const auto size = reader.optional("size")) {
+        read_size(*size, limits, parameters);
+    }
+    if (const auto blocks = reader.optional("blocks")) {
+        read_blocks(*blocks, limits, parameters);
+    }
+    if (const auto boundary = reader.optional("boundary")) {
+        ObjectReader sides(*boundary);
+        for (std::size_t side = 0; side < kDirectionCount; ++side) {
+            if (const auto given = sides.optional(discrete::kSideNames[side])) {
+                parameters.boundary[side] = read_side(*given, limits);
+            }
+        }
+        sides.finish();
+    }
+    if (const auto order = reader.optional("order")) {
+        constexpr std::array<Order, 3> kOrders = {Order::kScan, Order::kMinEntropy, Order::kRandom};
+        parameters.order = kOrders.at(order->one_of({"scan", "min_entropy", "random"}).value_or(0));
+    }
+    if (const auto weights = reader.optional("weights")) {
+        read_weights(*weights, limits, parameters);
+    }
+    if (const auto constraints = reader.optional("constraints")) {
+        if (const auto values = constraints->array(0, limits.constraints_max)) {
+            for (const Value& constraint : *values) {
+                read_constraint(constraint, limits, parameters);
+            }
+        }
+    }
+    reader.finish();
+    check_block_count(value, limits, parameters);
+    return parameters;
+}
+
+OrderedJson write_parameters(const Parameters& parameters) {
+    const GridSize size = *parameters.size;
+    OrderedJson boundary = OrderedJson::object();
+    for (std::size_t side = 0; side < kDirectionCount; ++side) {
+        boundary[discrete::kSideNames[side]] = write_side(*parameters.boundary[side]);
+    }
+    OrderedJson constraints = OrderedJson::array();
+    for (const discrete::Constraint& constraint : parameters.constraints) {
+        constraints.push_back(write_constraint(constraint));
+    }
+    return {
+        {"size", OrderedJson::array({size.x, size.y, size.z})},
+        {"blocks", write_blocks(*parameters.blocks)},
+        {"boundary", std::move(boundary)},
+        {"order", order_name(parameters.order)},
+        {"weights", write_weights(parameters.weights)},
+        {"constraints", std::move(constraints)}};
+}
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,31 @@
+#pragma once
+
+// Private to proto's sources.
+
+#include "proto/json.h"
+#include "proto/limits.h"
+#include "solver/discrete/example.h"
+#include "solver/discrete/parameters.h"
+
+#include <optional>
+
+namespace modelsynth::proto {
+
+// What stands under `parameters` of a discrete job; faults are noted in the value's list.
+[[nodiscard]] discrete::Parameters read_parameters(const Value& value, const RequestLimits& limits);
+
+// The inverse, every default written out. Requires: defaults filled in.
+[[nodiscard]] OrderedJson write_parameters(const discrete::Parameters& parameters);
+
+// One side: "free", "example", "periodic", a piece, or a list of pieces.
+[[nodiscard]] std::optional<discrete::SideBoundary> read_side(
+    const Value& value, const RequestLimits& limits
+);
+[[nodiscard]] OrderedJson write_side(const discrete::SideBoundary& side);
+
+// A whole example object.
+[[nodiscard]] std::optional<discrete::Example> read_example(
+    const Value& value, const RequestLimits& limits
+);
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,87 @@
+#include "proto/frame.h"
+
+#include <array>
+
+namespace modelsynth::proto {
+
+namespace {
+
+void append(std::string& bytes, std::uint64_t value, int count) {
+    for (int i = 0; i < count; ++i) {
+        bytes += static_cast<char>(value >> (8 * i) & 0xFF);
+    }
+}
+
+std::uint64_t read(std::string_view bytes, std::size_t offset, std::size_t count) {
+    std::uint64_t value = 0;
+    for (std::size_t i = count; i-- > 0;) {
+        value = value << 8 | static_cast<unsigned char>(bytes[offset + i]);
+    }
+    return value;
+}
+
+constexpr std::string_view kMagic = "MSYF";
+constexpr std::uint8_t kVersion = 1;
+
+}  // namespace
+
+std::string encode_frame(const Frame& frame) {
+    std::string bytes;
+    bytes.reserve(kFrameHeaderBytes + frame.payload.size());
+    bytes += kMagic;
+    append(bytes, kVersion, 1);
+    append(bytes, static_cast<std::uint64_t>(frame.kind), 1);
+    append(bytes, 0, 2);
+    append(bytes, frame.seq, 8);
+    const Box& region = frame.region;
+    for (const std::int32_t value :
+         {region.min.x, region.min.y, region.min.z, region.max.x, region.max.y, region.max.z}) {
+        append(bytes, static_cast<std::uint32_t>(value), 4);
+    }
+    append(bytes, frame.payload.size(), 4);
+    return bytes + frame.payload;
+}
+
+std::optional<Frame> decode_frame(std::string_view bytes) {
+    if (bytes.size() < kFrameHeaderBytes || bytes.substr(0, 4) != kMagic ||
+        read(bytes, 4, 1) != kVersion || read(bytes, 6, 2) != 0 ||
+        read(bytes, 40, 4) != bytes.size() - kFrameHeaderBytes) {
+        return std::nullopt;
+    }
+    const std::uint64_t kind = read(bytes, 5, 1);
+    if (kind < 1 || kind > 4) {
+        return std::nullopt;
+    }
+    std::array<std::int32_t, 6> corners = {};
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        corners[i] =
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(read(bytes, 16 + 4 * i, 4)));
+    }
+    return Frame{
+        static_cast<FrameKind>(kind),
+        read(bytes, 8, 8),
+        {{corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]}},
+        std::string(bytes.substr(kFrameHeaderBytes))};
+}
+
+std::string encode_labels(std::span<const Label> labels) {
+    std::string payload;
+    payload.reserve(labels.size() * 2);
+    for (const Label label : labels) {
+        append(payload, label, 2);
+    }
+    return payload;
+}
+
+std::optional<std::vector<Label>> decode_labels(std::string_view payload) {
+    if (payload.size() % 2 != 0) {
+        return std::nullopt;
+    }
+    std::vector<Label> labels(payload.size() / 2);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        labels[i] = static_cast<Label>(read(payload, 2 * i, 2));
+    }
+    return labels;
+}
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,197 @@
+#include "proto/job.h"
+
+#include "proto/json.h"
+#include "proto/schemas.h"
+
+#include <array>
+#include <utility>
+
+namespace modelsynth::proto {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> kStateNames = {
+    "queued", "running", "succeeded", "failed", "cancelled"};
+
+OrderedJson embed(const std::string& text) {
+    return text.empty() ? OrderedJson(nullptr) : OrderedJson::parse(text, nullptr, false);
+}
+
+OrderedJson optional_time(const std::optional<UnixMillis>& time) {
+    return time ? OrderedJson(to_rfc3339(*time)) : OrderedJson(nullptr);
+}
+
+// A share rounded to six places: enough for a progress bar, short on the wire.
+double fraction(std::uint64_t part, std::uint64_t whole) {
+    if (whole == 0) {
+        return 0;
+    }
+    const double share = static_cast<double>(part) / static_cast<double>(whole);
+    return static_cast<double>(static_cast<std::int64_t>(share * 1e6 + 0.5)) / 1e6;
+}
+
+OrderedJson triple(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
+
+OrderedJson solver_document() {
+    return {
+        {"name", "discrete"},
+        {"title", "Discrete model synthesis"},
+        {"description",
+         "Labels on a grid: any two neighbours in the model are neighbours in the example "
+         "(Merrell 2009, chapter 3)."},
+        {"parameters", OrderedJson::parse(kDiscreteParametersSchema)},
+        {"urls", {{"self", "/v1/solvers/discrete"}}}};
+}
+
+}  // namespace
+
+std::string_view state_name(JobState state) {
+    return kStateNames.at(static_cast<std::size_t>(state));
+}
+
+std::optional<JobState> state_of(std::string_view name) {
+    for (std::size_t i = 0; i < kStateNames.size(); ++i) {
+        if (kStateNames.at(i) == name) {
+            return static_cast<JobState>(i);
+        }
+    }
+    return std::nullopt;
+}
+
+bool is_ended(JobState state) { return state != JobState::kQueued && state != JobState::kRunning; }
+
+std::string to_json(const Job& job) {
+    const std::string self = "/v1/jobs/" + job.id;
+    // A running job's seq tells more than a share could; a finished one is whole by definition.
+    const double done =
+        job.state == JobState::kSucceeded ? 1.0 : fraction(job.blocks_done, job.blocks_total);
+    OrderedJson document = {
+        {"id", job.id},
+        {"state", state_name(job.state)},
+        {"solver", job.solver},
+        {"seed", job.seed},
+        {"created", to_rfc3339(job.created)},
+        {"started", optional_time(job.started)},
+        {"finished", optional_time(job.finished)},
+        {"expires", optional_time(job.expires)},
+        {"progress",
+         {{"blocks_done", job.blocks_done},
+          {"blocks_total", job.blocks_total},
+          {"fraction", done}}},
+        {"request", embed(job.request)},
+        {"result", embed(job.result)},
+        {"queue", nullptr},
+        {"urls",
+         {{"self", self},
+          {"events", self + "/events"},
+          {"stream", self + "/stream"},
+          {"model", self + "/model.glb"},
+          {"preview", self + "/preview.glb"},
+          {"labels", self + "/labels.json"},
+          {"cancel", self + "/cancel"}}},
+        {"error", embed(job.error)}};
+    if (job.queue_position) {
+        document["queue"] = {{"position", *job.queue_position}};
+    }
+    return dump(document);
+}
+
+std::string list_json(
+    const std::vector<std::string>& items, const std::optional<std::string>& next
+) {
+    std::string text = "{\"items\":[";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        text += i == 0 ? "" : ",";
+        text += items[i];
+    }
+    text += "],\"next\":";
+    text += next ? dump(OrderedJson(*next)) : "null";
+    return text + "}";
+}
+
+std::string to_json(const JobResult& result) {
+    const std::string self = "/v1/jobs/" + result.job_id;
+    return dump(OrderedJson{
+        {"model", self + "/model.glb"},
+        {"labels", self + "/labels.json"},
+        {"bytes", result.bytes},
+        {"sha256", result.sha256},
+        {"size", OrderedJson::array({result.size.x, result.size.y, result.size.z})},
+        {"stats",
+         {{"blocks_accepted", result.stats.blocks_accepted},
+          {"blocks_reverted", result.stats.blocks_reverted},
+          {"changed", result.stats.changed},
+          {"solve_seconds", result.solve_seconds}}}});
+}
+
+std::string queued_fields(std::uint64_t position) {
+    return dump(OrderedJson{{"position", position}});
+}
+
+std::string started_fields(std::uint32_t blocks_total, bool resumed) {
+    OrderedJson fields = {{"blocks_total", blocks_total}};
+    if (resumed) {
+        fields["resumed"] = true;
+    }
+    return dump(fields);
+}
+
+std::string block_fields(const BlockReport& report) {
+    const std::uint32_t done = report.index + 1;
+    return dump(OrderedJson{
+        {"index", report.index},
+        {"region", {{"min", triple(report.region.min)}, {"max", triple(report.region.max)}}},
+        {"outcome", report.accepted ? "accepted" : "reverted"},
+        {"attempts", report.attempts},
+        {"blocks_done", done},
+        {"blocks_total", report.blocks_total},
+        {"fraction", fraction(done, report.blocks_total)}});
+}
+
+std::string succeeded_fields(const std::string& result_json) {
+    return "{\"result\":" + result_json + "}";
+}
+
+std::string failed_fields(const std::string& problem_json) {
+    return "{\"error\":" + problem_json + "}";
+}
+
+std::string snapshot_fields(const std::string& job_json) { return "{\"job\":" + job_json + "}"; }
+
+std::string event_json(
+    std::uint64_t seq, std::string_view type, UnixMillis time, std::string_view fields
+) {
+    std::string text = "{\"seq\":" + std::to_string(seq) + ",\"type\":\"";
+    text += type;
+    text += "\",\"time\":\"" + to_rfc3339(time) + "\"";
+    if (fields.size() > 2) {
+        text += ',';
+        text += fields.substr(1);
+        return text;
+    }
+    return text + "}";
+}
+
+std::string labels_json(const Example& example, const Model& model) {
+    const OrderedJson head = {
+        {"size", OrderedJson::array({model.size.x, model.size.y, model.size.z})},
+        {"pieces", label_names(example)}};
+    std::string text = dump(head);
+    text.pop_back();
+    text += ",\"cells\":[";
+    for (std::size_t i = 0; i < model.labels.size(); ++i) {
+        if (i > 0) {
+            text += ',';
+        }
+        text += std::to_string(model.labels[i]);
+    }
+    return text + "]}";
+}
+
+std::string solver_list_json() { return list_json({dump(solver_document())}, std::nullopt); }
+
+std::string solver_json(std::string_view name) {
+    return name == "discrete" ? dump(solver_document()) : "";
+}
+
+}  // namespace modelsynth::proto

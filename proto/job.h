@@ -1,0 +1,79 @@
+#pragma once
+
+#include "proto/problem.h"
+#include "proto/timestamp.h"
+#include "solver/core/observer.h"
+#include "solver/registry/task.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace modelsynth::proto {
+
+enum class JobState : std::uint8_t { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
+
+[[nodiscard]] std::string_view state_name(JobState state);
+[[nodiscard]] std::optional<JobState> state_of(std::string_view name);
+[[nodiscard]] bool is_ended(JobState state);
+
+// A job as it is kept and shown.
+struct Job {
+    std::string id;
+    JobState state = JobState::kQueued;
+    std::string solver;
+    std::uint64_t seed = 0;
+    UnixMillis created = 0;
+    std::optional<UnixMillis> started;
+    std::optional<UnixMillis> finished;
+    std::optional<UnixMillis> expires;
+    std::uint32_t blocks_done = 0;
+    std::uint32_t blocks_total = 0;
+    std::string request;                          // JSON text, JobRequest::echo
+    std::string result;                           // JSON text; empty: none
+    std::string error;                            // JSON text; empty: none
+    std::optional<std::uint64_t> queue_position;  // of queued jobs, 0 is next
+};
+
+[[nodiscard]] std::string to_json(const Job& job);
+
+// {"items": [...], "next": cursor or null}; the items are JSON texts.
+[[nodiscard]] std::string list_json(
+    const std::vector<std::string>& items, const std::optional<std::string>& next
+);
+
+// What a finished model is, for `result`.
+struct JobResult {
+    std::string job_id;
+    std::uint64_t bytes = 0;
+    std::string sha256;
+    SynthesisStats stats;
+    double solve_seconds = 0;
+    GridSize size;
+};
+
+[[nodiscard]] std::string to_json(const JobResult& result);
+
+// --- events: the fields besides seq, type and time, as the JSON text of an object
+
+[[nodiscard]] std::string queued_fields(std::uint64_t position);
+[[nodiscard]] std::string started_fields(std::uint32_t blocks_total, bool resumed);
+[[nodiscard]] std::string block_fields(const BlockReport& report);
+[[nodiscard]] std::string succeeded_fields(const std::string& result_json);
+[[nodiscard]] std::string failed_fields(const std::string& problem_json);
+[[nodiscard]] std::string snapshot_fields(const std::string& job_json);
+
+// An event as it is sent. Requires: `fields` is one of the texts above.
+[[nodiscard]] std::string event_json(
+    std::uint64_t seq, std::string_view type, UnixMillis time, std::string_view fields
+);
+
+// {"size": [x, y, z], "pieces": [...], "cells": [...]}
+[[nodiscard]] std::string labels_json(const Example& example, const Model& model);
+
+// GET /v1/solvers and /v1/solvers/{name}; empty when there is no such solver.
+[[nodiscard]] std::string solver_list_json();
+[[nodiscard]] std::string solver_json(std::string_view name);
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace modelsynth::proto {
+
+// What a text from outside may be. Every field is a limit that a request can hit and whose edge
+// is tested.
+struct JsonLimits {
+    std::size_t depth_max = 64;
+    std::size_t nodes_max = 1'000'000;
+    std::size_t string_bytes_max = std::size_t{32} << 20;
+};
+
+// What one request may ask for.
+struct RequestLimits {
+    JsonLimits json;
+    std::int32_t extent_max = 4096;             // cells along one axis
+    std::size_t model_cells_max = 4'000'000;    // cells of one model
+    std::size_t blocks_max = 200'000;           // blocks of one schedule
+    std::int32_t block_extent_max = 64;         // cells along one axis of a block
+    std::size_t pieces_max = 4096;              // labels of one example
+    std::size_t example_cells_max = 1'000'000;  // cells of one example
+    std::size_t name_bytes_max = 128;
+    std::size_t tags_max = 32;
+    std::size_t constraints_max = 1000;
+    double deadline_seconds_max = 3600;
+    std::size_t glb_bytes_max = std::size_t{64} << 20;
+};
+
+// Faults listed in one problem.
+inline constexpr std::size_t kFaultsMax = 50;
+
+// Seeds survive JavaScript's numbers.
+inline constexpr std::uint64_t kSeedMax = (std::uint64_t{1} << 53) - 1;
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,76 @@
+#include "solver/registry/task.h"
+
+#include "solver/discrete/problem.h"
+#include "solver/discrete/scene.h"
+#include "solver/discrete/synthesis.h"
+
+#include <string>
+#include <utility>
+
+namespace modelsynth {
+
+namespace {
+
+// With one solver the variants have one alternative; std::get picks it. The next solver turns
+// these into visits.
+const discrete::Example& discrete_of(const Example& example) {
+    return *std::get<std::shared_ptr<const discrete::Example>>(example);
+}
+
+const discrete::Parameters& discrete_of(const Parameters& parameters) {
+    return std::get<discrete::Parameters>(parameters);
+}
+
+}  // namespace
+
+std::string_view solver_of(const Example& /*example*/) { return "discrete"; }
+
+std::string_view name_of(const Example& example) { return discrete_of(example).name; }
+
+std::vector<std::string> label_names(const Example& example) {
+    std::vector<std::string> names;
+    for (const discrete::Piece& piece : discrete_of(example).pieces) {
+        names.push_back(piece.name);
+    }
+    return names;
+}
+
+Scene example_scene(const Example& example) {
+    const discrete::Example& grid = discrete_of(example);
+    if (grid.size.cell_count() == 0) {
+        return discrete::make_piece_sheet(grid);  // rules without an arrangement
+    }
+    return discrete::make_scene(grid, grid.size, grid.cells, Box::whole(grid.size));
+}
+
+Scene pieces_scene(const Example& example) {
+    return discrete::make_piece_sheet(discrete_of(example));
+}
+
+Parameters with_defaults(const Parameters& parameters, const Example& example) {
+    return discrete::fill_defaults(discrete_of(parameters), discrete_of(example));
+}
+
+std::vector<Fault> find_faults(const Example& example, const Parameters& parameters) {
+    return discrete::find_faults(discrete_of(example), discrete_of(parameters));
+}
+
+GridSize model_size(const Parameters& parameters) { return *discrete_of(parameters).size; }
+
+Result<Finished> run(const Task& task, Observer& observer, const std::stop_token& stop) {
+    auto made = discrete::synthesise(
+        discrete_of(task.example), discrete_of(task.parameters), task.seed, observer, stop
+    );
+    if (!made) {
+        return tl::unexpected(std::move(made.error()));
+    }
+    return Finished{
+        {made->size, std::move(made->labels)},
+        {made->stats.blocks_accepted, made->stats.blocks_reverted, made->stats.changed}};
+}
+
+Scene make_scene(const Example& example, const Model& model, const Box& region) {
+    return discrete::make_scene(discrete_of(example), model.size, model.labels, region);
+}
+
+}  // namespace modelsynth

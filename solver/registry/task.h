@@ -1,0 +1,74 @@
+#pragma once
+
+#include "solver/core/grid.h"
+#include "solver/core/observer.h"
+#include "solver/core/result.h"
+#include "solver/discrete/example.h"
+#include "solver/discrete/parameters.h"
+#include "solver/mesh/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace modelsynth {
+
+// The registry: what every solver looks like to the program that runs it. A new solver adds an
+// alternative to the variants and a line to each function of task.cpp.
+using Example = std::variant<std::shared_ptr<const discrete::Example>>;
+using Parameters = std::variant<discrete::Parameters>;
+
+// "discrete", ...: the name under which requests ask for the solver of such examples.
+[[nodiscard]] std::string_view solver_of(const Example& example);
+[[nodiscard]] std::string_view name_of(const Example& example);
+
+// What a synthesis makes, as far as it has come. A cell of kNoLabel is not made yet.
+struct Model {
+    GridSize size;
+    std::vector<Label> labels;  // x fastest, then z, then y
+};
+
+// What result.stats tells of a finished synthesis, beside the time it took.
+struct SynthesisStats {
+    std::uint32_t blocks_accepted = 0;
+    std::uint32_t blocks_reverted = 0;
+    double changed = 0;  // share of sites that differ from the initial model
+};
+
+struct Finished {
+    Model model;
+    SynthesisStats stats;
+};
+
+// Names of the labels, by label.
+[[nodiscard]] std::vector<std::string> label_names(const Example& example);
+
+// The example as it was given, to look at, and its pieces side by side.
+[[nodiscard]] Scene example_scene(const Example& example);
+[[nodiscard]] Scene pieces_scene(const Example& example);
+
+// One request, checked and complete: all that a worker needs.
+struct Task {
+    Example example;
+    Parameters parameters;  // defaults filled in
+    std::uint64_t seed = 0;
+};
+
+[[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);
+[[nodiscard]] std::vector<Fault> find_faults(const Example& example, const Parameters& parameters);
+
+// How large the model will be.
+[[nodiscard]] GridSize model_size(const Parameters& parameters);
+
+// Runs the synthesis; see the solver's own header for what it ensures and how it fails.
+[[nodiscard]] Result<Finished> run(
+    const Task& task, Observer& observer, const std::stop_token& stop
+);
+
+// A region of the model as a scene, in the whole model's frame.
+[[nodiscard]] Scene make_scene(const Example& example, const Model& model, const Box& region);
+
+}  // namespace modelsynth
