@@ -1,0 +1,54 @@
+#pragma once
+
+#include "server/http/message.h"
+#include "server/jobs/job_service.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace modelsynth::server {
+
+struct HttpLimits {
+    std::size_t target_bytes_max = 8 * 1024;
+    std::size_t head_bytes_max = 16 * 1024;
+    std::size_t fields_max = 100;
+    std::uint64_t job_body_bytes_max = std::uint64_t{8} << 20;
+    std::uint64_t upload_body_bytes_max = std::uint64_t{64} << 20;
+    std::uint64_t other_body_bytes_max = 64 * 1024;
+    std::uint32_t idle_seconds = 60;
+    std::uint32_t head_seconds = 10;
+    std::uint32_t body_seconds = 30;
+    std::uint32_t write_seconds = 30;
+    std::uint32_t requests_per_connection_max = 10'000;
+    std::size_t connections_max = 4096;
+};
+
+// The resources of the contract as functions from requests to answers. Knows no socket; calls
+// block. Thread-safe.
+class Api {
+  public:
+    Api(JobService& service, const HttpLimits& limits) : service_(service), limits_(limits) {}
+
+    // What can be refused before the body is read: unknown paths, wrong methods, bodies that are
+    // too long or of another type. Nothing when the body is wanted.
+    [[nodiscard]] std::optional<Response> check_head(const Request& request) const;
+
+    // How long the body may be.
+    [[nodiscard]] std::uint64_t body_bytes_max(const Request& request) const;
+
+    [[nodiscard]] Response handle(const Request& request);
+
+    // The job as the answer of a request that waited for it.
+    [[nodiscard]] Response answer_with_job(
+        const Request& request, const Response& held, const WaitForJob& wait
+    );
+
+    [[nodiscard]] JobService& service() { return service_; }
+
+  private:
+    JobService& service_;
+    HttpLimits limits_;
+};
+
+}  // namespace modelsynth::server

@@ -1,0 +1,513 @@
+#include "server/http/connection.h"
+
+#include "proto/job.h"
+#include "server/http/head_check.h"
+#include "server/stream/event_cursor.h"
+#include "server/stream/on_pool.h"
+#include "server/stream/websocket.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/status.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using Parser = http::request_parser<http::string_body>;
+using ErrorCode = boost::system::error_code;
+
+constexpr auto kToken = net::as_tuple(net::use_awaitable);
+
+// One request as it comes in, and what becomes of the connection after it.
+struct Exchange {
+    Request request;
+    unsigned version = 11;
+    bool keep_alive = true;
+    bool chunked = false;
+};
+
+class Connection {
+  public:
+    Connection(net::ip::tcp::socket socket, const ConnectionContext& context)
+        : stream_(std::move(socket)), context_(context) {
+        buffer_.max_size(context.limits.head_bytes_max + kReadAhead);
+    }
+
+    net::awaitable<void> serve() {
+        ErrorCode ignored;
+        stream_.socket().set_option(net::ip::tcp::no_delay(true), ignored);
+        if (context_.counters->open > context_.limits.connections_max) {
+            const Response busy = problem_response(
+                proto::make_problem("unavailable", "too many connections are open"), {}
+            );
+            co_await write_whole(busy, Exchange{});
+            co_return;
+        }
+        for (std::uint32_t count = 0; count < context_.limits.requests_per_connection_max;
+             ++count) {
+            if (!co_await serve_one()) {
+                break;
+            }
+        }
+        co_await linger();
+    }
+
+  private:
+    static constexpr std::size_t kReadAhead = 64 * 1024;
+
+    // Serves one request; false when the connection is done with.
+    net::awaitable<bool> serve_one() {
+        Exchange exchange;
+        Parser parser;
+        auto refusal = co_await read_head(parser, exchange);
+        if (closed_) {
+            co_return false;
+        }
+        if (!refusal) {
+            refusal = context_.api->check_head(exchange.request);
+            if (refusal) {
+                refusal->close = exchange.chunked || exchange.request.content_length > 0;
+            }
+        }
+        if (!refusal) {
+            refusal = co_await read_body(parser, exchange);
+            if (closed_) {
+                co_return false;
+            }
+        }
+        if (refusal) {
+            exchange.keep_alive = exchange.keep_alive && !refusal->close;
+            co_return co_await write_whole(*refusal, exchange) && exchange.keep_alive;
+        }
+        auto handle = [this, &exchange] { return context_.api->handle(exchange.request); };
+        Response response = co_await on_pool(*context_.pool, handle);
+        if (response.wait) {
+            co_await wait_for_job(*response.wait);
+            auto answer = [this, &exchange, &response] {
+                return context_.api->answer_with_job(exchange.request, response, *response.wait);
+            };
+            Response answered = co_await on_pool(*context_.pool, answer);
+            response = std::move(answered);
+        }
+        co_return co_await respond(std::move(response), exchange, parser);
+    }
+
+    static Response refusal_of(const proto::Problem& problem, const Exchange& exchange) {
+        Response response = problem_response(problem, exchange.request);
+        response.close = true;
+        return response;
+    }
+
+    // Reads up to the empty line. A refusal, or nothing when the head is fine; closed_ is set
+    // when there is nobody to answer.
+    net::awaitable<std::optional<Response>> read_head(Parser& parser, Exchange& exchange) {
+        if (buffer_.size() == 0) {
+            stream_.expires_after(std::chrono::seconds(context_.limits.idle_seconds));
+            auto space = buffer_.prepare(4096);
+            auto [error, bytes] = co_await stream_.async_read_some(space, kToken);
+            if (error) {
+                closed_ = true;
+                co_return std::nullopt;
+            }
+            buffer_.commit(bytes);
+        }
+        stream_.expires_after(std::chrono::seconds(context_.limits.head_seconds));
+        auto [error, head_bytes] =
+            co_await net::async_read_until(stream_, buffer_, "\r\n\r\n", kToken);
+        const std::string_view bytes(
+            static_cast<const char*>(buffer_.data().data()), buffer_.size()
+        );
+        if (error == beast::error::timeout) {
+            co_return refusal_of(
+                proto::plain_problem(408, "the head of the request did not come in time"), exchange
+            );
+        }
+        const std::size_t line_bytes = std::min(bytes.find("\r\n"), bytes.size());
+        if (line_bytes > context_.limits.target_bytes_max) {
+            co_return refusal_of(
+                proto::plain_problem(
+                    414,
+                    "the request line may have " +
+                        std::to_string(context_.limits.target_bytes_max) + " bytes"
+                ),
+                exchange
+            );
+        }
+        if (error == net::error::not_found ||
+            (!error && head_bytes > context_.limits.head_bytes_max)) {
+            co_return too_many_fields(exchange);
+        }
+        if (error) {
+            closed_ = true;
+            co_return std::nullopt;
+        }
+        if (const auto problem = check_raw_head(bytes.substr(0, head_bytes))) {
+            co_return refusal_of(*problem, exchange);
+        }
+        co_return parse_head(parser, exchange);
+    }
+
+    Response too_many_fields(const Exchange& exchange) const {
+        return refusal_of(
+            proto::plain_problem(
+                431,
+                "the header fields may have " + std::to_string(context_.limits.head_bytes_max) +
+                    " bytes and be " + std::to_string(context_.limits.fields_max)
+            ),
+            exchange
+        );
+    }
+
+    std::optional<Response> parse_head(Parser& parser, Exchange& exchange) {
+        parser.header_limit(static_cast<std::uint32_t>(context_.limits.head_bytes_max + 1));
+        parser.body_limit(context_.limits.upload_body_bytes_max);
+        ErrorCode error;
+        const std::size_t used = parser.put(buffer_.data(), error);
+        buffer_.consume(used);
+        if (error == http::error::header_limit) {
+            return too_many_fields(exchange);
+        }
+        if (error == http::error::bad_version) {
+            // The library says the same of a bare line feed, which is another fault.
+            return refusal_of(
+                proto::plain_problem(505, "this server speaks HTTP/1.1 and HTTP/1.0"), exchange
+            );
+        }
+        if (error == http::error::body_limit) {
+            return refusal_of(
+                proto::make_problem("body-too-large", "the body is longer than is taken"), exchange
+            );
+        }
+        if ((error && error != http::error::need_more) || !parser.is_header_done()) {
+            return refusal_of(
+                proto::make_problem("malformed-request", "the head of the request is malformed"),
+                exchange
+            );
+        }
+        const auto& message = parser.get();
+        exchange.version = message.version();
+        exchange.keep_alive = message.keep_alive();
+        exchange.chunked = parser.chunked();
+        exchange.request.method = std::string(message.method_string());
+        exchange.request.content_length = parser.content_length().value_or(0);
+        for (const auto& field : message) {
+            std::string name(field.name_string());
+            std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+                return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+            });
+            exchange.request.headers.emplace_back(std::move(name), std::string(field.value()));
+        }
+        if (exchange.request.headers.size() > context_.limits.fields_max) {
+            return too_many_fields(exchange);
+        }
+        if (!parse_target(std::string_view(message.target()), exchange.request)) {
+            return refusal_of(
+                proto::make_problem("malformed-request", "the target of the request is malformed"),
+                exchange
+            );
+        }
+        if (const auto problem = check_framing(exchange.request, exchange.version)) {
+            return refusal_of(*problem, exchange);
+        }
+        return std::nullopt;
+    }
+
+    net::awaitable<std::optional<Response>> read_body(Parser& parser, Exchange& exchange) {
+        const std::uint64_t limit = context_.api->body_bytes_max(exchange.request);
+        parser.body_limit(limit);
+        if (!parser.is_done()) {
+            if (exchange.request.header("expect")) {
+                static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+                auto bytes = net::buffer(kContinue);
+                co_await net::async_write(stream_, bytes, kToken);
+            }
+            parser.eager(true);
+            stream_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
+            auto [error, bytes] = co_await http::async_read(stream_, buffer_, parser, kToken);
+            if (error == http::error::body_limit) {
+                co_return refusal_of(
+                    proto::make_problem(
+                        "body-too-large", "the body may have " + std::to_string(limit) + " bytes"
+                    ),
+                    exchange
+                );
+            }
+            if (error == beast::error::timeout) {
+                co_return refusal_of(
+                    proto::plain_problem(408, "the body did not come in time"), exchange
+                );
+            }
+            if (error.category() == make_error_code(http::error::bad_chunk).category() &&
+                error != http::error::partial_message && error != http::error::end_of_stream) {
+                co_return refusal_of(
+                    proto::make_problem("malformed-request", "the body is malformed"), exchange
+                );
+            }
+            if (error) {
+                closed_ = true;
+                co_return std::nullopt;
+            }
+        }
+        exchange.request.body = std::move(parser.get().body());
+        co_return std::nullopt;
+    }
+
+    // Waits until the job ended, the time is up or the client is gone.
+    net::awaitable<void> wait_for_job(const WaitForJob wait) {
+        EventCursor cursor(
+            context_.api->service().events(), *context_.pool, stream_.get_executor(), wait.job_id, 0
+        );
+        const auto until = std::chrono::steady_clock::now() + wait.most;
+        stream_.expires_never();
+        for (;;) {
+            const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+                until - std::chrono::steady_clock::now()
+            );
+            if (left.count() <= 0 || context_.counters->draining || peer_has_closed()) {
+                co_return;
+            }
+            constexpr auto kSlice = std::chrono::milliseconds(500);
+            const auto batch = co_await cursor.next(std::min(left, kSlice));
+            if (batch.gone || batch.finished) {
+                co_return;
+            }
+        }
+    }
+
+    // Looks without reading: bytes of a next request may be there.
+    bool peer_has_closed() {
+        ErrorCode error;
+        std::array<char, 1> byte = {};
+        stream_.socket().non_blocking(true, error);
+        const std::size_t count =
+            stream_.socket().receive(net::buffer(byte), net::socket_base::message_peek, error);
+        return (error && error != net::error::would_block) || (!error && count == 0);
+    }
+
+    net::awaitable<bool> respond(Response response, Exchange& exchange, Parser& parser) {
+        if (auto* upgrade = std::get_if<SocketUpgrade>(&response.body)) {
+            handed_over_ = true;
+            auto session = serve_websocket(
+                std::move(stream_), parser.release(), std::move(*upgrade), context_
+            );
+            co_await std::move(session);
+            co_return false;
+        }
+        if (auto* events = std::get_if<EventStreamBody>(&response.body)) {
+            co_await write_events(response, *events, exchange);
+            co_return false;
+        }
+        exchange.keep_alive =
+            exchange.keep_alive && !response.close && !context_.counters->draining;
+        if (std::holds_alternative<FileBody>(response.body)) {
+            co_return co_await write_file(response, exchange) && exchange.keep_alive;
+        }
+        co_return co_await write_whole(response, exchange) && exchange.keep_alive;
+    }
+
+    static std::string head_text(
+        const Response& response, const Exchange& exchange, std::optional<std::uint64_t> length
+    ) {
+        std::string text =
+            "HTTP/1.1 " + std::to_string(response.status) + " " +
+            std::string(http::obsolete_reason(static_cast<http::status>(response.status))) + "\r\n";
+        for (const auto& [name, value] : response.headers) {
+            text += name + ": " + value + "\r\n";
+        }
+        text += "Server: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
+        if (length) {
+            text += "Content-Length: " + std::to_string(*length) + "\r\n";
+        }
+        if (!exchange.keep_alive) {
+            text += "Connection: close\r\n";
+        } else if (exchange.version < 11) {
+            text += "Connection: keep-alive\r\n";
+        }
+        return text + "\r\n";
+    }
+
+    net::awaitable<bool> write_bytes(std::string_view bytes) {
+        stream_.expires_after(std::chrono::seconds(context_.limits.write_seconds));
+        auto buffer = net::buffer(bytes.data(), bytes.size());
+        auto [error, count] = co_await net::async_write(stream_, buffer, kToken);
+        closed_ = closed_ || error;
+        co_return !error;
+    }
+
+    net::awaitable<bool> write_whole(const Response& response, const Exchange& exchange) {
+        const auto& body = std::get<std::string>(response.body);
+        // 204 and 304 have no content, not even an empty one.
+        const bool has_content = response.status != 204 && response.status != 304;
+        const auto length = has_content ? std::optional<std::uint64_t>(body.size()) : std::nullopt;
+        std::string text = head_text(response, exchange, length);
+        if (has_content && exchange.request.method != "HEAD") {
+            text += body;
+        }
+        co_return co_await write_bytes(text);
+    }
+
+    net::awaitable<bool> write_file(const Response& response, const Exchange& exchange) {
+        constexpr std::uint64_t kPiece = 256 * 1024;
+        FileBody body = std::get<FileBody>(response.body);
+        const std::string head = head_text(response, exchange, body.length);
+        if (!co_await write_bytes(head) || exchange.request.method == "HEAD") {
+            co_return !closed_;
+        }
+        std::string piece;
+        while (body.length > 0) {
+            piece.resize(std::min(kPiece, body.length));
+            auto read = [&body, &piece] { return body.reader->read(body.offset, piece); };
+            const auto got = co_await on_pool(*context_.pool, read);
+            if (!got || !co_await write_bytes(piece)) {
+                closed_ = true;  // a length was promised that cannot be kept
+                co_return false;
+            }
+            body.offset += piece.size();
+            body.length -= piece.size();
+        }
+        co_return true;
+    }
+
+    static std::string sse_text(const EventPage& page) {
+        std::string text;
+        for (const Event& event : page.events) {
+            text += "id: " + std::to_string(event.seq) + "\nevent: " + event.type + "\ndata: " +
+                    proto::event_json(event.seq, event.type, event.time, event.fields) + "\n\n";
+        }
+        return text;
+    }
+
+    // Text as a chunk, or as it is for HTTP/1.0, whose stream ends with the connection.
+    net::awaitable<bool> write_chunk(std::string text, const Exchange& exchange) {
+        if (exchange.version >= 11) {
+            std::array<char, 20> size = {};
+            const int digits = std::snprintf(size.data(), size.size(), "%zx\r\n", text.size());
+            text = std::string(size.data(), static_cast<std::size_t>(digits)) + text + "\r\n";
+        }
+        co_return co_await write_bytes(text);
+    }
+
+    net::awaitable<void> write_events(
+        Response& response, const EventStreamBody& body, Exchange& exchange
+    ) {
+        exchange.keep_alive = false;
+        if (exchange.version >= 11) {
+            response.headers.emplace_back("Transfer-Encoding", "chunked");
+        }
+        const std::string head = head_text(response, exchange, std::nullopt);
+        if (!co_await write_bytes(head) || exchange.request.method == "HEAD") {
+            co_return;
+        }
+        const std::string hello = "retry: 2000\n\n";
+        if (!co_await write_chunk(hello, exchange)) {
+            co_return;
+        }
+        EventCursor cursor(
+            context_.api->service().events(),
+            *context_.pool,
+            stream_.get_executor(),
+            body.job_id,
+            body.after
+        );
+        constexpr auto kHeartbeat = std::chrono::seconds(15);
+        auto last_written = std::chrono::steady_clock::now();
+        for (;;) {
+            constexpr auto kWait = std::chrono::milliseconds(500);
+            const auto batch = co_await cursor.next(kWait);
+            const bool quiet = std::chrono::steady_clock::now() - last_written > kHeartbeat;
+            std::string text = sse_text(batch.page);
+            if (text.empty() && quiet) {
+                text = ": still here\n\n";
+            }
+            if (!text.empty()) {
+                if (!co_await write_chunk(std::move(text), exchange)) {
+                    co_return;
+                }
+                last_written = std::chrono::steady_clock::now();
+            }
+            if (batch.gone || batch.finished || context_.counters->draining) {
+                break;
+            }
+            if (peer_has_closed()) {
+                closed_ = true;
+                co_return;
+            }
+        }
+        if (exchange.version >= 11) {
+            static constexpr std::string_view kLastChunk = "0\r\n\r\n";
+            co_await write_bytes(kLastChunk);
+        }
+    }
+
+    // Lets the client read the answer before the connection is reset by bytes nobody read.
+    net::awaitable<void> linger() {
+        if (handed_over_) {
+            co_return;
+        }
+        ErrorCode ignored;
+        stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+        if (closed_) {
+            co_return;
+        }
+        stream_.expires_after(std::chrono::seconds(1));
+        std::array<char, 4096> rest = {};
+        for (int i = 0; i < 1024; ++i) {
+            auto buffer = net::buffer(rest);
+            auto [error, bytes] = co_await stream_.async_read_some(buffer, kToken);
+            if (error) {
+                break;
+            }
+        }
+        stream_.close();
+    }
+
+    beast::tcp_stream stream_;
+    const ConnectionContext& context_;
+    beast::flat_buffer buffer_;
+    bool closed_ = false;       // nobody reads any more
+    bool handed_over_ = false;  // the stream is a WebSocket's
+};
+
+// Counts the connection as long as it is open.
+class OpenCount {
+  public:
+    explicit OpenCount(std::atomic<std::size_t>& count) : count_(count) { ++count_; }
+
+    OpenCount(const OpenCount&) = delete;
+    OpenCount& operator=(const OpenCount&) = delete;
+
+    ~OpenCount() { --count_; }
+
+  private:
+    std::atomic<std::size_t>& count_;
+};
+
+}  // namespace
+
+net::awaitable<void> serve_connection(net::ip::tcp::socket socket, ConnectionContext context) {
+    const OpenCount count(context.counters->open);
+    Connection connection(std::move(socket), context);
+    co_await connection.serve();
+}
+
+}  // namespace modelsynth::server

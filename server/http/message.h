@@ -1,0 +1,82 @@
+#pragma once
+
+#include "proto/problem.h"
+#include "server/store/artifact_store.h"
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace modelsynth::server {
+
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+// A request, parsed and free of any library. Header names are in lower case.
+struct Request {
+    std::string method;
+    std::string target;             // as it was sent
+    std::vector<std::string> path;  // decoded segments: /v1/jobs -> {"v1", "jobs"}
+    Fields query;                   // decoded
+    Fields headers;
+    std::string body;
+    std::uint64_t content_length = 0;
+
+    // The first header or query field of the name.
+    [[nodiscard]] std::optional<std::string> header(std::string_view name) const;
+    [[nodiscard]] std::optional<std::string> query_field(std::string_view name) const;
+};
+
+// Bytes of a stored file, streamed.
+struct FileBody {
+    std::shared_ptr<ArtifactStore::Reader> reader;
+    std::uint64_t offset = 0;
+    std::uint64_t length = 0;
+};
+
+// Server-Sent Events of a job.
+struct EventStreamBody {
+    std::string job_id;
+    std::uint64_t after = 0;
+};
+
+enum class Partial : std::uint8_t { kNone, kLabels, kGlb };
+
+// The connection becomes a WebSocket.
+struct SocketUpgrade {
+    std::string job_id;
+    std::uint64_t after = 0;
+    Partial partial = Partial::kNone;
+};
+
+// The answer is held back until the job has ended or the time is up; then answer_with_job() makes
+// it.
+struct WaitForJob {
+    std::string job_id;
+    std::chrono::milliseconds most = {};
+    int status_ended = 200;
+    int status_unfinished = 202;
+};
+
+struct Response {
+    int status = 200;
+    Fields headers;
+    std::variant<std::string, FileBody, EventStreamBody, SocketUpgrade> body = std::string();
+    std::optional<WaitForJob> wait = {};
+    bool close = false;  // the connection cannot be used any more
+};
+
+[[nodiscard]] Response json_response(int status, std::string body);
+// The problem as application/problem+json, `instance` set to the request's target.
+[[nodiscard]] Response problem_response(const proto::Problem& problem, const Request& request);
+
+// Splits a request target into path and query and decodes both. False when it is malformed: not
+// in origin form, a broken escape, a NUL byte.
+[[nodiscard]] bool parse_target(std::string_view target, Request& request);
+
+}  // namespace modelsynth::server

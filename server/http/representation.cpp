@@ -1,0 +1,161 @@
+#include "server/http/representation.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+namespace modelsynth::server {
+
+namespace {
+
+struct ByteRange {
+    std::uint64_t first = 0;
+    std::uint64_t length = 0;
+};
+
+enum class RangeVerdict : std::uint8_t { kWhole, kPart, kUnsatisfiable };
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) {
+        text.remove_prefix(1);
+    }
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) {
+        text.remove_suffix(1);
+    }
+    return text;
+}
+
+// Whether a list of tags has this one. `weak`: W/ counts as equal, as If-None-Match wants.
+bool lists_tag(std::string_view list, std::string_view etag, bool weak) {
+    while (!list.empty()) {
+        const std::size_t comma = list.find(',');
+        std::string_view tag = trimmed(list.substr(0, comma));
+        if (tag == "*") {
+            return true;
+        }
+        if (weak && tag.starts_with("W/")) {
+            tag.remove_prefix(2);
+        }
+        if (tag == etag) {
+            return true;
+        }
+        list = comma == std::string_view::npos ? std::string_view() : list.substr(comma + 1);
+    }
+    return false;
+}
+
+bool parse_number(std::string_view text, std::uint64_t& value) {
+    const char* end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    return !text.empty() && parsed.ec == std::errc() && parsed.ptr == end;
+}
+
+// A Range that is malformed or of another unit is ignored, as the RFC says.
+RangeVerdict parse_range(std::string_view text, std::uint64_t size, ByteRange& range) {
+    if (!text.starts_with("bytes=")) {
+        return RangeVerdict::kWhole;
+    }
+    text = trimmed(text.substr(6));
+    const std::size_t dash = text.find('-');
+    if (dash == std::string_view::npos || text.find(',') != std::string_view::npos) {
+        return RangeVerdict::kWhole;
+    }
+    const std::string_view first_text = trimmed(text.substr(0, dash));
+    const std::string_view last_text = trimmed(text.substr(dash + 1));
+    std::uint64_t first = 0;
+    std::uint64_t last = size - 1;
+    if (first_text.empty()) {
+        std::uint64_t suffix = 0;
+        if (!parse_number(last_text, suffix)) {
+            return RangeVerdict::kWhole;
+        }
+        if (suffix == 0 || size == 0) {
+            return RangeVerdict::kUnsatisfiable;
+        }
+        first = size - std::min(size, suffix);
+    } else if (!parse_number(first_text, first) ||
+               (!last_text.empty() && !parse_number(last_text, last)) ||
+               (!last_text.empty() && last < first)) {
+        return RangeVerdict::kWhole;
+    }
+    if (first >= size) {
+        return RangeVerdict::kUnsatisfiable;
+    }
+    range = {first, std::min(last, size - 1) - first + 1};
+    return RangeVerdict::kPart;
+}
+
+std::uint64_t size_of(const Representation& representation) {
+    if (const auto* text = std::get_if<std::string>(&representation.content)) {
+        return text->size();
+    }
+    return std::get<std::shared_ptr<ArtifactStore::Reader>>(representation.content)->size();
+}
+
+void set_body(Response& response, Representation& representation, const ByteRange& range) {
+    if (auto* text = std::get_if<std::string>(&representation.content)) {
+        response.body = text->substr(range.first, range.length);
+        return;
+    }
+    response.body = FileBody{
+        std::get<std::shared_ptr<ArtifactStore::Reader>>(representation.content),
+        range.first,
+        range.length};
+}
+
+}  // namespace
+
+Response respond_with(const Request& request, Representation representation) {
+    const std::uint64_t size = size_of(representation);
+    Response response;
+    response.headers = {
+        {"ETag", representation.etag}, {"Cache-Control", "no-cache"}, {"Accept-Ranges", "bytes"}};
+    const auto if_match = request.header("if-match");
+    if (if_match && !lists_tag(*if_match, representation.etag, false)) {
+        response = problem_response(
+            {"about:blank", "Precondition Failed", 412, "the entity tag is another", {}, {}},
+            request
+        );
+        response.headers.emplace_back("ETag", representation.etag);
+        return response;
+    }
+    const auto if_none_match = request.header("if-none-match");
+    if (if_none_match && lists_tag(*if_none_match, representation.etag, true)) {
+        response.status = 304;
+        return response;
+    }
+    ByteRange range = {0, size};
+    const auto range_field = request.header("range");
+    const auto if_range = request.header("if-range");
+    if (range_field && request.method == "GET" && (!if_range || *if_range == representation.etag)) {
+        switch (parse_range(*range_field, size, range)) {
+            case RangeVerdict::kWhole:
+                break;
+            case RangeVerdict::kPart:
+                response.status = 206;
+                response.headers.emplace_back(
+                    "Content-Range",
+                    "bytes " + std::to_string(range.first) + "-" +
+                        std::to_string(range.first + range.length - 1) + "/" + std::to_string(size)
+                );
+                break;
+            case RangeVerdict::kUnsatisfiable:
+                response = problem_response(
+                    proto::plain_problem(416, "the range lies beyond the file"), request
+                );
+                response.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));
+                return response;
+        }
+    }
+    response.headers.emplace_back("Content-Type", representation.media_type);
+    if (!representation.file_name.empty()) {
+        response.headers.emplace_back(
+            "Content-Disposition", "inline; filename=\"" + representation.file_name + "\""
+        );
+    }
+    set_body(response, representation, range);
+    return response;
+}
+
+}  // namespace modelsynth::server

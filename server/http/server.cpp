@@ -1,0 +1,164 @@
+#include "server/http/server.h"
+
+#include "server/http/connection.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace net = boost::asio;
+using net::ip::tcp;
+
+struct HttpServer::State {
+    State(const HttpConfig& given, Api& given_api, std::shared_ptr<spdlog::logger> logger)
+        : config(given),
+          api(given_api),
+          log(std::move(logger)),
+          acceptor(io),
+          signals(io),
+          pool(given.pool_threads) {}
+
+    HttpConfig config;
+    Api& api;
+    std::shared_ptr<spdlog::logger> log;
+    net::io_context io;
+    tcp::acceptor acceptor;
+    net::signal_set signals;
+    ConnectionCounters counters;
+    net::thread_pool pool;  // last: its threads are joined while the rest still stands
+};
+
+namespace {
+
+void log_failure(const std::shared_ptr<spdlog::logger>& log, const std::exception_ptr& failure) {
+    if (!failure) {
+        return;
+    }
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::exception& error) {
+        log->debug("connection ended what=\"{}\"", error.what());
+    }
+}
+
+net::awaitable<void> accept_connections(
+    tcp::acceptor& acceptor,
+    net::io_context& io,
+    ConnectionContext context,
+    std::shared_ptr<spdlog::logger> log
+) {
+    constexpr auto kToken = net::as_tuple(net::use_awaitable);
+    net::steady_timer pause(co_await net::this_coro::executor);
+    for (;;) {
+        auto strand = net::make_strand(io);
+        auto [error, socket] = co_await acceptor.async_accept(strand, kToken);
+        if (error == net::error::operation_aborted || !acceptor.is_open()) {
+            co_return;
+        }
+        if (error) {
+            // Out of descriptors, mostly: accepting again at once would only burn the processor.
+            log->warn("accepting failed why=\"{}\"", error.message());
+            pause.expires_after(std::chrono::milliseconds(100));
+            co_await pause.async_wait(kToken);
+            continue;
+        }
+        auto on_end = [log](std::exception_ptr failure) { log_failure(log, failure); };
+        net::co_spawn(strand, serve_connection(std::move(socket), context), on_end);
+    }
+}
+
+}  // namespace
+
+HttpServer::HttpServer(const HttpConfig& config, Api& api, std::shared_ptr<spdlog::logger> log)
+    : state_(std::make_unique<State>(config, api, std::move(log))) {}
+
+HttpServer::~HttpServer() {
+    state_->io.stop();
+    state_->pool.join();
+}
+
+std::uint16_t HttpServer::listen() {
+    const tcp::endpoint endpoint(
+        net::ip::make_address(state_->config.address), state_->config.port
+    );
+    state_->acceptor.open(endpoint.protocol());
+    state_->acceptor.set_option(net::socket_base::reuse_address(true));
+    state_->acceptor.bind(endpoint);
+    state_->acceptor.listen(net::socket_base::max_listen_connections);
+    return state_->acceptor.local_endpoint().port();
+}
+
+void HttpServer::run(const std::function<void()>& on_signal) {
+    State& state = *state_;
+    state.signals.add(SIGTERM);
+    state.signals.add(SIGINT);
+    std::thread drainer;
+    state.signals.async_wait([&](boost::system::error_code error, int) {
+        if (error) {
+            return;
+        }
+        state.counters.draining = true;
+        // A second signal does not wait for anything.
+        state.signals.async_wait([](boost::system::error_code again, int) {
+            if (!again) {
+                std::_Exit(1);
+            }
+        });
+        drainer = std::thread([&] {
+            on_signal();
+            // What streams notice within their next wait, and a little more.
+            for (int i = 0; i < 30 && state.counters.open > 0; ++i) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            }
+            stop();
+        });
+    });
+    const ConnectionContext context = {
+        &state.api, &state.pool, &state.counters, state.config.limits, state.log};
+    net::co_spawn(
+        state.io,
+        accept_connections(state.acceptor, state.io, context, state.log),
+        [](const std::exception_ptr&) {}
+    );
+    std::vector<std::thread> threads;
+    const auto serve = [&state] {
+        for (;;) {
+            try {
+                state.io.run();
+                return;
+            } catch (const std::exception& error) {
+                state.log->error("a handler threw what=\"{}\"", error.what());
+            }
+        }
+    };
+    for (std::size_t i = 1; i < state.config.network_threads; ++i) {
+        threads.emplace_back(serve);
+    }
+    serve();
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+    if (drainer.joinable()) {
+        drainer.join();
+    }
+}
+
+void HttpServer::stop() { state_->io.stop(); }
+
+}  // namespace modelsynth::server

@@ -1,0 +1,127 @@
+#include "server/jobs/example_library.h"
+
+#include "proto/example_codec.h"
+#include "server/jobs/store_problem.h"
+#include "solver/examples/built_in.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace modelsynth::server {
+
+namespace {
+
+std::optional<ExampleLibrary::Entry> find_built_in(const std::string& id) {
+    for (const auto& example : examples::built_in()) {
+        if (example->name == id) {
+            return ExampleLibrary::Entry{id, true, example};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+ExampleLibrary::ExampleLibrary(
+    ExampleStore& store,
+    ArtifactStore& artifacts,
+    const proto::RequestLimits& limits,
+    std::size_t uploads_max
+)
+    : store_(store), artifacts_(artifacts), limits_(limits), uploads_max_(uploads_max) {}
+
+std::optional<ExampleLibrary::Entry> ExampleLibrary::find(const std::string& id) {
+    if (auto built_in = find_built_in(id)) {
+        return built_in;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        const auto known = std::find_if(parsed_.begin(), parsed_.end(), [&id](const Entry& entry) {
+            return entry.id == id;
+        });
+        if (known != parsed_.end()) {
+            parsed_.splice(parsed_.begin(), parsed_, known);
+            return parsed_.front();
+        }
+    }
+    const auto row = store_.find_example(id);
+    const auto text = row ? artifacts_.load(row->digest) : Stored<std::string>("");
+    if (!row || !text) {
+        return std::nullopt;
+    }
+    auto upload = proto::parse_example(*text, limits_);
+    if (!upload) {
+        return std::nullopt;
+    }
+    Entry entry = {id, false, upload->example};
+    remember(entry);
+    return entry;
+}
+
+proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list() {
+    std::vector<Entry> entries;
+    for (const auto& example : examples::built_in()) {
+        entries.push_back({example->name, true, example});
+    }
+    const auto rows = store_.list_examples();
+    if (!rows) {
+        return tl::unexpected(problem_of(rows.error()));
+    }
+    for (const auto& row : *rows) {
+        if (auto entry = find(row.id)) {
+            entries.push_back(std::move(*entry));
+        }
+    }
+    return entries;
+}
+
+proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view text) {
+    auto upload = proto::parse_example(text, limits_);
+    if (!upload) {
+        return tl::unexpected(std::move(upload.error()));
+    }
+    const auto pin = artifacts_.put(upload->canonical);
+    if (!pin) {
+        return tl::unexpected(problem_of(pin.error()));
+    }
+    const std::string& digest = (*pin)->digest();
+    Entry entry = {"x" + digest.substr(0, 24), false, upload->example};
+    const auto kept = store_.add_example({entry.id, upload->example->name, digest}, uploads_max_);
+    if (!kept) {
+        if (kept.error().code == StoreErrorCode::kQueueFull) {
+            return tl::unexpected(proto::make_problem("too-large", kept.error().message));
+        }
+        return tl::unexpected(problem_of(kept.error()));
+    }
+    remember(entry);
+    return entry;
+}
+
+proto::Parsed<void> ExampleLibrary::erase(const std::string& id) {
+    if (find_built_in(id)) {
+        return tl::unexpected(
+            proto::make_problem("forbidden", "built-in examples cannot be deleted")
+        );
+    }
+    const auto erased = store_.erase_example(id);
+    if (!erased && erased.error().code == StoreErrorCode::kConflict) {
+        return tl::unexpected(proto::make_problem("example-in-use", erased.error().message));
+    }
+    if (!erased) {
+        return tl::unexpected(problem_of(erased.error()));
+    }
+    const std::lock_guard lock(mutex_);
+    parsed_.remove_if([&id](const Entry& entry) { return entry.id == id; });
+    return {};
+}
+
+void ExampleLibrary::remember(const Entry& entry) {
+    const std::lock_guard lock(mutex_);
+    parsed_.remove_if([&entry](const Entry& known) { return known.id == entry.id; });
+    parsed_.push_front(entry);
+    if (parsed_.size() > kParsedMax) {
+        parsed_.pop_back();
+    }
+}
+
+}  // namespace modelsynth::server

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "proto/limits.h"
+#include "proto/problem.h"
+#include "server/store/artifact_store.h"
+#include "server/store/job_store.h"
+#include "solver/registry/task.h"
+
+#include <list>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modelsynth::server {
+
+// The examples there are: built-in ones by name, uploaded ones from the store, a few of which are
+// kept parsed. Thread-safe; calls block.
+class ExampleLibrary {
+  public:
+    struct Entry {
+        std::string id;
+        bool built_in = false;
+        Example example;
+    };
+
+    ExampleLibrary(
+        ExampleStore& store,
+        ArtifactStore& artifacts,
+        const proto::RequestLimits& limits,
+        std::size_t uploads_max
+    );
+
+    [[nodiscard]] std::optional<Entry> find(const std::string& id);
+
+    // Built-in ones first, then the uploaded ones by id.
+    [[nodiscard]] proto::Parsed<std::vector<Entry>> list();
+
+    // Checks the JSON text and keeps it; the id is derived from the content.
+    [[nodiscard]] proto::Parsed<Entry> upload(std::string_view text);
+
+    // Fails: not-found, forbidden for a built-in one, example-in-use.
+    [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
+
+  private:
+    void remember(const Entry& entry);
+
+    static constexpr std::size_t kParsedMax = 16;
+
+    ExampleStore& store_;
+    ArtifactStore& artifacts_;
+    proto::RequestLimits limits_;
+    std::size_t uploads_max_;
+    std::mutex mutex_;
+    std::list<Entry> parsed_;  // most recently used first
+};
+
+}  // namespace modelsynth::server

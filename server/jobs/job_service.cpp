@@ -1,0 +1,319 @@
+#include "server/jobs/job_service.h"
+
+#include "proto/frame.h"
+#include "proto/job_request.h"
+#include "server/jobs/ids.h"
+#include "server/jobs/store_problem.h"
+
+#include <chrono>
+#include <utility>
+
+namespace modelsynth::server {
+
+namespace {
+
+using proto::Job;
+using proto::JobState;
+using proto::make_problem;
+using proto::Parsed;
+
+template <class T>
+Parsed<T> parsed(Stored<T> stored) {
+    if (!stored) {
+        return tl::unexpected(problem_of(stored.error()));
+    }
+    if constexpr (std::is_void_v<T>) {
+        return {};
+    } else {
+        return std::move(*stored);
+    }
+}
+
+const char* artifact_name(GlbProfile profile) {
+    switch (profile) {
+        case GlbProfile::kNodes:
+            return "nodes.glb";
+        case GlbProfile::kInstanced:
+            return "instanced.glb";
+        case GlbProfile::kMerged:
+            return "merged.glb";
+    }
+    return "nodes.glb";
+}
+
+// Jobs often have no label yet at some cells; those count as not made.
+bool has_expired(const Job& job) { return job.expires && *job.expires < now_millis(); }
+
+}  // namespace
+
+JobService::JobService(
+    const JobServiceConfig& config,
+    JobStore& jobs,
+    EventLog& events,
+    ExampleStore& examples,
+    ArtifactStore& artifacts,
+    std::shared_ptr<spdlog::logger> log
+)
+    : config_(config),
+      jobs_(jobs),
+      events_(events),
+      artifacts_(artifacts),
+      log_(std::move(log)),
+      examples_(examples, artifacts, config_.limits, config.examples_max) {
+    for (std::size_t i = 0; i < config_.workers; ++i) {
+        workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    }
+}
+
+JobService::~JobService() { drain(); }
+
+void JobService::work(const std::stop_token& stop) {
+    // A notification is a hint; what is queued is found by looking.
+    constexpr auto kPoll = std::chrono::milliseconds(250);
+    const WorkerContext context = {
+        jobs_,
+        events_,
+        artifacts_,
+        examples_,
+        live_,
+        running_,
+        config_.limits,
+        config_.retention_ms,
+        log_};
+    std::uint64_t seen = 0;
+    while (!stop.stop_requested()) {
+        {
+            const std::lock_guard lock(mutex_);
+            seen = submissions_;
+        }
+        const auto claim = jobs_.claim(now_millis());
+        if (claim && *claim) {
+            run_claim(context, **claim);
+            continue;
+        }
+        std::unique_lock lock(mutex_);
+        queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen; });
+    }
+}
+
+Parsed<Submitted> JobService::submit(std::string_view body, const std::string& idempotency_key) {
+    if (draining_) {
+        return tl::unexpected(make_problem("draining", "the server is stopping"));
+    }
+    auto request = proto::parse_job_request(
+        body,
+        config_.limits,
+        [this](const std::string& id) -> std::optional<Example> {
+            auto entry = examples_.find(id);
+            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
+        },
+        make_seed()
+    );
+    if (!request) {
+        return tl::unexpected(std::move(request.error()));
+    }
+    NewJob job;
+    job.created = now_millis();
+    job.id = make_job_id(job.created);
+    job.solver = request->solver;
+    job.seed = request->task.seed;
+    job.priority = request->priority;
+    job.request = request->echo;
+    job.example_id = request->example_id;
+    job.idempotency_key = idempotency_key;
+    if (!idempotency_key.empty()) {
+        job.request_hash = sha256_hex(proto::canonical_json(body));
+    }
+    job.deadline_seconds = request->deadline_seconds;
+    auto submitted = parsed(jobs_.submit(job, config_.queue_max));
+    if (submitted && !submitted->replayed) {
+        const std::lock_guard lock(mutex_);
+        ++submissions_;
+        queued_.notify_one();
+    }
+    return submitted;
+}
+
+Parsed<Job> JobService::find(const std::string& id) { return parsed(jobs_.find(id)); }
+
+Parsed<JobPage> JobService::list(const JobQuery& query) { return parsed(jobs_.list(query)); }
+
+Parsed<Job> JobService::cancel(const std::string& id) {
+    auto job = jobs_.cancel(id, now_millis());
+    if (job && job->state == JobState::kRunning) {
+        running_.stop(id, StopReason::kCancelled);
+        // The worker may have let go between the two calls; then nobody would take this back.
+        const auto now = jobs_.find(id);
+        if (!now || proto::is_ended(now->state)) {
+            running_.settle(id);
+        }
+    }
+    return parsed(std::move(job));
+}
+
+Parsed<void> JobService::erase(const std::string& id) {
+    const auto job = jobs_.find(id);
+    auto erased = jobs_.erase(id);
+    if (job && job->state == JobState::kRunning) {
+        running_.stop(id, StopReason::kLost);
+    }
+    live_.forget(id);
+    return parsed(std::move(erased));
+}
+
+Parsed<Job> JobService::find_finished(const std::string& id) {
+    auto job = find(id);
+    if (!job) {
+        return job;
+    }
+    if (!proto::is_ended(job->state)) {
+        return tl::unexpected(
+            make_problem("not-finished", "the job is " + std::string(proto::state_name(job->state)))
+        );
+    }
+    if (has_expired(*job)) {
+        return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
+    }
+    if (job->state != JobState::kSucceeded) {
+        return tl::unexpected(make_problem(
+            "no-model",
+            "the job " + std::string(job->state == JobState::kFailed ? "failed" : "was cancelled") +
+                "; its preview may be there"
+        ));
+    }
+    return job;
+}
+
+Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
+    const auto digest = jobs_.artifact(job.id, "labels");
+    if (!digest) {
+        return tl::unexpected(problem_of(digest.error()));
+    }
+    const auto payload = artifacts_.load(*digest);
+    if (!payload) {
+        return tl::unexpected(problem_of(payload.error()));
+    }
+    auto request = proto::parse_job_request(
+        job.request,
+        config_.limits,
+        [this](const std::string& id) -> std::optional<Example> {
+            auto entry = examples_.find(id);
+            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
+        },
+        job.seed
+    );
+    if (!request) {
+        return tl::unexpected(std::move(request.error()));
+    }
+    auto labels = proto::decode_labels(*payload);
+    const GridSize size = model_size(request->task.parameters);
+    if (!labels || labels->size() != size.cell_count()) {
+        return tl::unexpected(make_problem("internal", "the job's labels are damaged"));
+    }
+    return LoadedModel{request->task.example, {size, std::move(*labels)}};
+}
+
+Parsed<std::string> JobService::model_digest(const std::string& id, GlbProfile profile) {
+    const auto job = find_finished(id);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    const auto known = jobs_.artifact(id, artifact_name(profile));
+    if (known) {
+        return *known;
+    }
+    const auto loaded = load_model(*job);
+    if (!loaded) {
+        return tl::unexpected(loaded.error());
+    }
+    GlbOptions options;
+    options.profile = profile;
+    const auto glb = write_glb(
+        make_scene(loaded->example, loaded->model, Box::whole(loaded->model.size)), options
+    );
+    if (!glb) {
+        return tl::unexpected(proto::problem_of(glb.error()));
+    }
+    const auto pin = artifacts_.put(*glb);
+    if (!pin) {
+        return tl::unexpected(problem_of(pin.error()));
+    }
+    const auto linked = jobs_.link(id, {artifact_name(profile), (*pin)->digest()});
+    if (!linked) {
+        return tl::unexpected(problem_of(linked.error()));
+    }
+    return (*pin)->digest();
+}
+
+std::optional<JobService::WholeState> JobService::whole_state(const std::string& id) {
+    if (const auto live = live_.find(id)) {
+        return WholeState{live->example(), live->state()};
+    }
+    const auto job = jobs_.find(id);
+    if (!job || !proto::is_ended(job->state)) {
+        return std::nullopt;
+    }
+    auto loaded = load_model(*job);
+    const auto page = events_.read(id, 0, 1);
+    if (!loaded || !page) {
+        return std::nullopt;
+    }
+    return WholeState{loaded->example, {page->head - 1, std::move(loaded->model), true}};
+}
+
+Parsed<std::string> JobService::preview(const std::string& id) {
+    const auto job = find(id);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    if (has_expired(*job)) {
+        return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
+    }
+    const auto whole = whole_state(id);
+    if (!whole || !whole->state.any_block) {
+        return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
+    }
+    const Model& model = whole->state.model;
+    auto glb = write_glb(make_scene(whole->example, model, Box::whole(model.size)));
+    if (!glb) {
+        return tl::unexpected(proto::problem_of(glb.error()));
+    }
+    return std::move(*glb);
+}
+
+Parsed<std::string> JobService::labels_json(const std::string& id) {
+    const auto job = find_finished(id);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    const auto loaded = load_model(*job);
+    if (!loaded) {
+        return tl::unexpected(loaded.error());
+    }
+    return proto::labels_json(loaded->example, loaded->model);
+}
+
+bool JobService::is_ready() {
+    if (draining_) {
+        return false;
+    }
+    const auto queued = jobs_.queued_count();
+    return queued && *queued < config_.queue_max;
+}
+
+void JobService::drain() {
+    draining_ = true;
+    for (std::jthread& worker : workers_) {
+        worker.request_stop();
+    }
+    queued_.notify_all();
+    // RunningJobs stops what is in hand and what is taken in hand from now on.
+    running_.stop_all(StopReason::kDraining);
+    for (std::jthread& worker : workers_) {
+        if (worker.joinable()) {
+            worker.join();
+        }
+    }
+}
+
+}  // namespace modelsynth::server

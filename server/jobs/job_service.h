@@ -1,0 +1,125 @@
+#pragma once
+
+#include "proto/job.h"
+#include "proto/limits.h"
+#include "proto/problem.h"
+#include "server/jobs/example_library.h"
+#include "server/jobs/live_job.h"
+#include "server/jobs/running_jobs.h"
+#include "server/jobs/worker.h"
+#include "server/store/artifact_store.h"
+#include "server/store/event_log.h"
+#include "server/store/job_store.h"
+#include "solver/mesh/glb_writer.h"
+
+#include <spdlog/logger.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace modelsynth::server {
+
+struct JobServiceConfig {
+    std::size_t workers = 2;
+    std::size_t queue_max = 1000;
+    std::size_t examples_max = 1000;
+    proto::UnixMillis retention_ms = proto::UnixMillis{7} * 24 * 3600 * 1000;
+    proto::RequestLimits limits;
+};
+
+// Everything that can be done with jobs and examples, without a word of HTTP. Owns the worker
+// threads. Thread-safe; calls block on the disk and some on the processor, so none is made from a
+// network thread.
+class JobService {
+  public:
+    JobService(
+        const JobServiceConfig& config,
+        JobStore& jobs,
+        EventLog& events,
+        ExampleStore& examples,
+        ArtifactStore& artifacts,
+        std::shared_ptr<spdlog::logger> log
+    );
+    // Stops as drain() does.
+    ~JobService();
+
+    JobService(const JobService&) = delete;
+    JobService& operator=(const JobService&) = delete;
+
+    [[nodiscard]] proto::Parsed<Submitted> submit(
+        std::string_view body, const std::string& idempotency_key
+    );
+    [[nodiscard]] proto::Parsed<proto::Job> find(const std::string& id);
+    [[nodiscard]] proto::Parsed<JobPage> list(const JobQuery& query);
+    // Asks for the end; a running job ends within one block.
+    [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
+    [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
+
+    // The finished model's file in a profile, made on first use and kept with the job.
+    // Fails: not-found, not-finished, no-model, expired, too-large.
+    [[nodiscard]] proto::Parsed<std::string> model_digest(
+        const std::string& id, GlbProfile profile
+    );
+    // The model as far as it is. Fails: not-found, not-finished before the first accepted block.
+    [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
+    [[nodiscard]] proto::Parsed<std::string> labels_json(const std::string& id);
+
+    // The state of a job after an event, for whoever missed frames: labels and the seq up to
+    // which they include everything. Nothing when there is no model yet.
+    struct WholeState {
+        Example example;
+        LiveJob::State state;
+    };
+
+    [[nodiscard]] std::optional<WholeState> whole_state(const std::string& id);
+
+    [[nodiscard]] ExampleLibrary& examples() { return examples_; }
+
+    [[nodiscard]] LiveJobs& live() { return live_; }
+
+    [[nodiscard]] EventLog& events() { return events_; }
+
+    [[nodiscard]] ArtifactStore& artifacts() { return artifacts_; }
+
+    // Whether work is taken: 503 otherwise.
+    [[nodiscard]] bool is_ready();
+
+    // Takes no more work; running jobs stop at their next block and stay in the store. Returns
+    // when the workers have let go.
+    void drain();
+
+    [[nodiscard]] bool is_draining() const { return draining_; }
+
+  private:
+    struct LoadedModel {
+        Example example;
+        Model model;
+    };
+
+    void work(const std::stop_token& stop);
+    [[nodiscard]] proto::Parsed<LoadedModel> load_model(const proto::Job& job);
+    [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
+
+    JobServiceConfig config_;
+    JobStore& jobs_;
+    EventLog& events_;
+    ArtifactStore& artifacts_;
+    std::shared_ptr<spdlog::logger> log_;
+    ExampleLibrary examples_;
+    LiveJobs live_;
+    RunningJobs running_;
+    std::atomic<bool> draining_ = false;
+    std::mutex mutex_;
+    std::condition_variable_any queued_;
+    std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news
+    std::vector<std::jthread> workers_;
+};
+
+}  // namespace modelsynth::server

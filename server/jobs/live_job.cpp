@@ -1,0 +1,98 @@
+#include "server/jobs/live_job.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace modelsynth::server {
+
+LiveJob::LiveJob(Example example, GridSize size) : example_(std::move(example)) {
+    state_.model.size = size;
+    state_.model.labels.assign(size.cell_count(), kNoLabel);
+}
+
+void LiveJob::start(std::uint64_t seq, std::span<const Label> initial) {
+    const std::lock_guard lock(mutex_);
+    state_.seq = seq;
+    if (!initial.empty()) {
+        state_.model.labels.assign(initial.begin(), initial.end());
+    }
+}
+
+void LiveJob::apply(std::shared_ptr<const Patch> patch) {
+    const std::lock_guard lock(mutex_);
+    state_.seq = std::max(state_.seq, patch->seq);
+    state_.any_block = true;
+    std::size_t next = 0;
+    for_each_cell(patch->region, [&](const Cell& cell) {
+        state_.model.labels[state_.model.size.index(cell)] = patch->labels[next++];
+    });
+    patch_bytes_ += patch->labels.size() * sizeof(Label);
+    patches_.push_back(std::move(patch));
+    while (patch_bytes_ > kPatchBytesMax && patches_.size() > 1) {
+        patch_bytes_ -= patches_.front()->labels.size() * sizeof(Label);
+        patches_.pop_front();
+    }
+}
+
+void LiveJob::pass(std::uint64_t seq) {
+    const std::lock_guard lock(mutex_);
+    state_.seq = std::max(state_.seq, seq);
+}
+
+LiveJob::State LiveJob::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
+std::shared_ptr<const Patch> LiveJob::patch(std::uint64_t seq) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::lower_bound(
+        patches_.begin(),
+        patches_.end(),
+        seq,
+        [](const auto& patch, std::uint64_t wanted) { return patch->seq < wanted; }
+    );
+    return found != patches_.end() && (*found)->seq == seq ? *found : nullptr;
+}
+
+std::size_t LiveJob::bytes() const {
+    const std::lock_guard lock(mutex_);
+    return patch_bytes_ + state_.model.labels.size() * sizeof(Label);
+}
+
+void LiveJobs::add(const std::string& id, std::shared_ptr<LiveJob> job) {
+    const std::lock_guard lock(mutex_);
+    retired_.remove(id);
+    jobs_[id] = std::move(job);
+}
+
+std::shared_ptr<LiveJob> LiveJobs::find(const std::string& id) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    return found == jobs_.end() ? nullptr : found->second;
+}
+
+void LiveJobs::retire(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    if (!jobs_.contains(id)) {
+        return;
+    }
+    retired_.push_back(id);
+    std::size_t bytes = 0;
+    for (const std::string& retired : retired_) {
+        bytes += jobs_.at(retired)->bytes();
+    }
+    while (!retired_.empty() && (retired_.size() > kRetiredMax || bytes > kRetiredBytesMax)) {
+        bytes -= jobs_.at(retired_.front())->bytes();
+        jobs_.erase(retired_.front());
+        retired_.pop_front();
+    }
+}
+
+void LiveJobs::forget(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    retired_.remove(id);
+    jobs_.erase(id);
+}
+
+}  // namespace modelsynth::server

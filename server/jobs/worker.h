@@ -1,0 +1,45 @@
+#pragma once
+
+#include "proto/limits.h"
+#include "server/jobs/example_library.h"
+#include "server/jobs/live_job.h"
+#include "server/jobs/running_jobs.h"
+#include "server/store/artifact_store.h"
+#include "server/store/event_log.h"
+#include "server/store/job_store.h"
+
+#include <spdlog/logger.h>
+
+#include <memory>
+#include <string>
+
+namespace modelsynth::server {
+
+// Part of what a job's log and model depend on; a change of the solver that changes models must
+// change it.
+inline constexpr const char* kSolverVersion = "discrete-1";
+
+// A job that was claimed this often in a row without logging anything new is given up: it takes
+// the server down with it, or time and again there is none to make it.
+inline constexpr std::uint32_t kFruitlessClaimsMax = 8;
+
+// What a worker needs; everything outlives it and is thread-safe.
+struct WorkerContext {
+    JobStore& jobs;
+    EventLog& events;
+    ArtifactStore& artifacts;
+    ExampleLibrary& examples;
+    LiveJobs& live;
+    RunningJobs& running;
+    const proto::RequestLimits& limits;
+    proto::UnixMillis retention_ms;
+    std::shared_ptr<spdlog::logger> log;
+};
+
+// Runs one claimed job to its end, or until it is told to stop: solves, logs each block, keeps
+// the artifacts, ends the job. A job that was begun before is solved anew; since solving is
+// deterministic nothing is appended until it passes what the log already holds, and what is
+// solved again must equal what was logged. Throws nothing.
+void run_claim(const WorkerContext& context, const Claim& claim);
+
+}  // namespace modelsynth::server

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "server/store/types.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace modelsynth::server {
+
+// The ordered log of events of every job: gapless from 1, only what is on disk.
+class EventLog {
+  public:
+    // Ends the subscription; once it has returned the callback does not run any more.
+    class Subscription {
+      public:
+        virtual ~Subscription() = default;
+    };
+
+    virtual ~EventLog() = default;
+
+    // The events after `after`, at most `limit`. Blocks. Fails: kNotFound.
+    [[nodiscard]] virtual Stored<EventPage> read(
+        const std::string& job_id, std::uint64_t after, std::size_t limit
+    ) = 0;
+
+    // Calls `changed` after every commit that touched the job's log, and when the job is erased;
+    // never two at once. A hint to read, nothing more. It must not call into the store.
+    [[nodiscard]] virtual std::unique_ptr<Subscription> subscribe(
+        const std::string& job_id, std::function<void()> changed
+    ) = 0;
+};
+
+}  // namespace modelsynth::server

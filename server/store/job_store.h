@@ -1,0 +1,90 @@
+#pragma once
+
+#include "server/store/types.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace modelsynth::server {
+
+// Durable jobs. An answer of success means that it is on disk. All calls block and may be made
+// from any thread, none from a network thread. A mutating call may be repeated.
+class JobStore {
+  public:
+    virtual ~JobStore() = default;
+
+    // Job, key and event 1 (`queued`) appear in one commit, or none does. A known key with the
+    // same hash answers with its job. Fails: kConflict (the key has another hash), kQueueFull
+    // when queue_max jobs are queued.
+    [[nodiscard]] virtual Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) = 0;
+
+    [[nodiscard]] virtual Stored<proto::Job> find(const std::string& id) = 0;
+    [[nodiscard]] virtual Stored<JobPage> list(const JobQuery& query) = 0;
+    [[nodiscard]] virtual Stored<std::size_t> queued_count() = 0;
+
+    // The queued job of highest priority, a job that waited 30 s counting as one level higher,
+    // equal ones in order of arrival; it is then running. Nothing when none is queued.
+    [[nodiscard]] virtual Stored<std::optional<Claim>> claim(proto::UnixMillis now) = 0;
+
+    // Appends events of a running job, numbered in the commit that writes them. Returns at once;
+    // `done` is called in order of the calls, on the store's thread, with the first seq once they
+    // are on disk. Blocks while too much waits to be written.
+    // Fails: kLeaseLost.
+    virtual void append(
+        const Lease& lease,
+        std::vector<NewEvent> events,
+        const Progress& progress,
+        std::function<void(const Stored<std::uint64_t>&)> done
+    ) = 0;
+
+    // Ends a running job: state, last event and links to artifacts in one commit. A job whose
+    // cancellation was asked for before ends as cancelled, whatever the outcome says. Repeating
+    // answers the same. Fails: kLeaseLost, kConflict when a digest is not stored.
+    [[nodiscard]] virtual Stored<proto::Job> finish(const Lease& lease, const Outcome& outcome) = 0;
+
+    // Gives a running job back to the queue; costs no attempt.
+    [[nodiscard]] virtual Stored<void> release(const Lease& lease, double solved_seconds) = 0;
+
+    // Ends a queued job, marks a running one so that its holder ends it, leaves an ended one.
+    [[nodiscard]] virtual Stored<proto::Job> cancel(
+        const std::string& id, proto::UnixMillis now
+    ) = 0;
+
+    // Forgets the job, its key, its events and those of its artifacts that nothing else uses.
+    [[nodiscard]] virtual Stored<void> erase(const std::string& id) = 0;
+
+    // An artifact of the job by name.
+    [[nodiscard]] virtual Stored<std::string> artifact(
+        const std::string& id, const std::string& name
+    ) = 0;
+
+    // Adds an artifact to a finished job; one of that name stays.
+    [[nodiscard]] virtual Stored<void> link(const std::string& id, const ArtifactLink& link) = 0;
+
+    // Takes the artifacts of jobs that expired before `now`.
+    virtual void expire(proto::UnixMillis now) = 0;
+};
+
+// Uploaded examples.
+class ExampleStore {
+  public:
+    struct Row {
+        std::string id;
+        std::string name;
+        std::string digest;  // of the JSON text
+    };
+
+    virtual ~ExampleStore() = default;
+
+    // Keeps the example; one of that id stays as it is. Fails: kConflict when the digest is not
+    // stored, kQueueFull when count_max examples are kept.
+    [[nodiscard]] virtual Stored<void> add_example(const Row& row, std::size_t count_max) = 0;
+    [[nodiscard]] virtual Stored<Row> find_example(const std::string& id) = 0;
+    [[nodiscard]] virtual Stored<std::vector<Row>> list_examples() = 0;
+    // Fails: kConflict while an unfinished job uses it.
+    [[nodiscard]] virtual Stored<void> erase_example(const std::string& id) = 0;
+};
+
+}  // namespace modelsynth::server

@@ -1,0 +1,257 @@
+#include "server/store/sqlite/file_artifacts.h"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Descriptor {
+  public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+    Descriptor& operator=(Descriptor&&) = delete;
+
+    ~Descriptor() {
+        if (fd_ >= 0) {
+            ::close(fd_);
+        }
+    }
+
+    [[nodiscard]] int get() const { return fd_; }
+
+  private:
+    int fd_;
+};
+
+tl::unexpected<StoreError> unavailable(const std::string& what) {
+    return tl::unexpected(StoreError{
+        StoreErrorCode::kUnavailable, what + ": " + std::strerror(errno)});
+}
+
+bool write_all(int fd, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) {
+            continue;
+        }
+        if (written < 0) {
+            return false;
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+bool sync_directory(const fs::path& path) {
+    const Descriptor directory(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    return directory.get() >= 0 && ::fsync(directory.get()) == 0;
+}
+
+class FileReader final : public ArtifactStore::Reader {
+  public:
+    FileReader(Descriptor file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
+
+    [[nodiscard]] std::uint64_t size() const override { return size_; }
+
+    [[nodiscard]] Stored<void> read(std::uint64_t offset, std::span<char> into) override {
+        while (!into.empty()) {
+            const ssize_t got =
+                ::pread(file_.get(), into.data(), into.size(), static_cast<off_t>(offset));
+            if (got < 0 && errno == EINTR) {
+                continue;
+            }
+            if (got < 0) {
+                return unavailable("an artifact cannot be read");
+            }
+            if (got == 0) {
+                return tl::unexpected(StoreError{
+                    StoreErrorCode::kCorrupt, "an artifact is shorter than it was"});
+            }
+            into = into.subspan(static_cast<std::size_t>(got));
+            offset += static_cast<std::uint64_t>(got);
+        }
+        return {};
+    }
+
+  private:
+    Descriptor file_;
+    std::uint64_t size_;
+};
+
+}  // namespace
+
+std::string sha256_hex(std::string_view bytes) {
+    std::array<unsigned char, 32> digest = {};
+    unsigned int length = 0;
+    EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr);
+    static constexpr const char* kHex = "0123456789abcdef";
+    std::string text;
+    for (const unsigned char byte : digest) {
+        text += kHex[byte >> 4];
+        text += kHex[byte & 15];
+    }
+    return text;
+}
+
+class FileArtifacts::FilePin final : public Pin {
+  public:
+    FilePin(FileArtifacts& store, std::string digest) : store_(store), digest_(std::move(digest)) {
+        const std::lock_guard lock(store_.mutex_);
+        ++store_.pins_[digest_];
+    }
+
+    FilePin(const FilePin&) = delete;
+    FilePin& operator=(const FilePin&) = delete;
+
+    ~FilePin() override { store_.unpin(digest_); }
+
+    [[nodiscard]] const std::string& digest() const override { return digest_; }
+
+  private:
+    FileArtifacts& store_;
+    std::string digest_;
+};
+
+FileArtifacts::FileArtifacts(fs::path directory, fs::path temporary)
+    : directory_(std::move(directory)), temporary_(std::move(temporary)) {
+    fs::create_directories(directory_);
+    fs::remove_all(temporary_);
+    fs::create_directories(temporary_);
+}
+
+fs::path FileArtifacts::path_of(const std::string& digest) const {
+    return directory_ / digest.substr(0, 2) / digest.substr(2, 2) / digest;
+}
+
+Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::put(std::string_view bytes) {
+    // The pin comes first: from then on nobody removes the file, whether it is there already or
+    // about to be.
+    auto pin = std::make_unique<FilePin>(*this, sha256_hex(bytes));
+    if (!exists(pin->digest())) {
+        if (auto written = write_file(pin->digest(), bytes); !written) {
+            return tl::unexpected(std::move(written.error()));
+        }
+    }
+    return pin;
+}
+
+Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_view bytes) {
+    fs::path temporary;
+    {
+        const std::lock_guard lock(mutex_);
+        temporary = temporary_ / std::to_string(next_temporary_++);
+    }
+    const auto give_up = [&temporary](const std::string& what) {
+        auto error = unavailable(what);
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        return error;
+    };
+    {
+        const Descriptor file(
+            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640)
+        );
+        if (file.get() < 0 || !write_all(file.get(), bytes) || ::fsync(file.get()) != 0) {
+            return give_up("an artifact cannot be written");
+        }
+    }
+    const fs::path target = path_of(digest);
+    std::error_code error;
+    const bool new_directory = fs::create_directories(target.parent_path(), error);
+    fs::rename(temporary, target, error);
+    if (error) {
+        return give_up("an artifact cannot be put in its place");
+    }
+    const bool synced = sync_directory(target.parent_path()) &&
+                        (!new_directory || (sync_directory(target.parent_path().parent_path()) &&
+                                            sync_directory(directory_)));
+    if (!synced) {
+        return unavailable("an artifact's directory cannot be synced");
+    }
+    return {};
+}
+
+Stored<std::unique_ptr<ArtifactStore::Reader>> FileArtifacts::open(const std::string& digest) {
+    Descriptor file(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.get() < 0) {
+        return tl::unexpected(StoreError{
+            StoreErrorCode::kNotFound, "there is no artifact " + digest});
+    }
+    struct stat status = {};
+    if (::fstat(file.get(), &status) != 0) {
+        return unavailable("an artifact cannot be read");
+    }
+    return std::make_unique<FileReader>(
+        std::move(file), static_cast<std::uint64_t>(status.st_size)
+    );
+}
+
+Stored<std::string> FileArtifacts::load(const std::string& digest) {
+    auto reader = open(digest);
+    if (!reader) {
+        return tl::unexpected(std::move(reader.error()));
+    }
+    std::string bytes((*reader)->size(), '\0');
+    if (auto read = (*reader)->read(0, bytes); !read) {
+        return tl::unexpected(std::move(read.error()));
+    }
+    if (sha256_hex(bytes) != digest) {
+        return tl::unexpected(StoreError{
+            StoreErrorCode::kCorrupt, "artifact " + digest + " has other content"});
+    }
+    return bytes;
+}
+
+bool FileArtifacts::exists(const std::string& digest) const {
+    std::error_code error;
+    return fs::exists(path_of(digest), error);
+}
+
+void FileArtifacts::remove_if_unpinned(const std::string& digest) {
+    const std::lock_guard lock(mutex_);
+    if (!pins_.contains(digest)) {
+        std::error_code ignored;  // an orphan is found again at the next start
+        fs::remove(path_of(digest), ignored);
+    }
+}
+
+void FileArtifacts::sweep(const std::function<bool(const std::string&)>& is_used) {
+    std::vector<fs::path> orphans;
+    for (const auto& entry : fs::recursive_directory_iterator(directory_)) {
+        if (entry.is_regular_file() && !is_used(entry.path().filename().string())) {
+            orphans.push_back(entry.path());
+        }
+    }
+    for (const fs::path& orphan : orphans) {
+        std::error_code ignored;
+        fs::remove(orphan, ignored);
+    }
+}
+
+void FileArtifacts::unpin(const std::string& digest) {
+    const std::lock_guard lock(mutex_);
+    const auto found = pins_.find(digest);
+    if (--found->second == 0) {
+        pins_.erase(found);
+    }
+}
+
+}  // namespace modelsynth::server

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "server/store/artifact_store.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+
+namespace modelsynth::server {
+
+// Artifacts as files DIR/ab/cd/<sha256>, written in TMP, synced, renamed, the directory synced.
+// Thread-safe.
+class FileArtifacts final : public ArtifactStore {
+  public:
+    // Empties `temporary`.
+    FileArtifacts(std::filesystem::path directory, std::filesystem::path temporary);
+
+    [[nodiscard]] Stored<std::unique_ptr<Pin>> put(std::string_view bytes) override;
+    [[nodiscard]] Stored<std::unique_ptr<Reader>> open(const std::string& digest) override;
+    [[nodiscard]] Stored<std::string> load(const std::string& digest) override;
+
+    [[nodiscard]] bool exists(const std::string& digest) const;
+
+    // Removes the file unless somebody holds a pin.
+    void remove_if_unpinned(const std::string& digest);
+
+    // Removes every file for which `is_used` answers no. For the start, before anyone else.
+    void sweep(const std::function<bool(const std::string& digest)>& is_used);
+
+  private:
+    class FilePin;
+
+    [[nodiscard]] std::filesystem::path path_of(const std::string& digest) const;
+    Stored<void> write_file(const std::string& digest, std::string_view bytes);
+    void unpin(const std::string& digest);
+
+    std::filesystem::path directory_;
+    std::filesystem::path temporary_;
+    std::mutex mutex_;
+    std::map<std::string, std::size_t> pins_;
+    std::uint64_t next_temporary_ = 0;
+};
+
+}  // namespace modelsynth::server

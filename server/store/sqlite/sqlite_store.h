@@ -1,0 +1,112 @@
+#pragma once
+
+#include "server/store/artifact_store.h"
+#include "server/store/event_log.h"
+#include "server/store/job_store.h"
+#include "server/store/sqlite/database.h"
+#include "server/store/sqlite/file_artifacts.h"
+#include "server/store/sqlite/writer.h"
+
+#include <condition_variable>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace modelsynth::server {
+
+// The embedded store: a directory with a SQLite database (WAL, FULL) and artifact files.
+//
+//   DIR/lock            held while a process uses the directory; a second one is refused
+//   DIR/modelsynth.db   jobs, events, links, examples
+//   DIR/artifacts/      files by SHA-256
+//   DIR/tmp/            files being written; emptied at the start
+class SqliteStore final : public JobStore, public EventLog, public ExampleStore {
+  public:
+    // Opens or makes the store and takes back what a crash left: jobs that were running are
+    // queued again, unreferenced files are removed. Fails: kUnavailable, kConflict when another
+    // process has it or a newer version wrote it.
+    [[nodiscard]] static Stored<std::unique_ptr<SqliteStore>> open(
+        const std::filesystem::path& directory
+    );
+
+    ~SqliteStore() override;
+
+    [[nodiscard]] ArtifactStore& artifacts() { return *artifacts_; }
+
+    // JobStore
+    [[nodiscard]] Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) override;
+    [[nodiscard]] Stored<proto::Job> find(const std::string& id) override;
+    [[nodiscard]] Stored<JobPage> list(const JobQuery& query) override;
+    [[nodiscard]] Stored<std::size_t> queued_count() override;
+    [[nodiscard]] Stored<std::optional<Claim>> claim(proto::UnixMillis now) override;
+    void append(
+        const Lease& lease,
+        std::vector<NewEvent> events,
+        const Progress& progress,
+        std::function<void(const Stored<std::uint64_t>&)> done
+    ) override;
+    [[nodiscard]] Stored<proto::Job> finish(const Lease& lease, const Outcome& outcome) override;
+    [[nodiscard]] Stored<void> release(const Lease& lease, double solved_seconds) override;
+    [[nodiscard]] Stored<proto::Job> cancel(const std::string& id, proto::UnixMillis now) override;
+    [[nodiscard]] Stored<void> erase(const std::string& id) override;
+    [[nodiscard]] Stored<std::string> artifact(const std::string& id, const std::string& name)
+        override;
+    [[nodiscard]] Stored<void> link(const std::string& id, const ArtifactLink& link) override;
+    void expire(proto::UnixMillis now) override;
+
+    // EventLog
+    [[nodiscard]] Stored<EventPage> read(
+        const std::string& job_id, std::uint64_t after, std::size_t limit
+    ) override;
+    [[nodiscard]] std::unique_ptr<Subscription> subscribe(
+        const std::string& job_id, std::function<void()> changed
+    ) override;
+
+    // ExampleStore
+    [[nodiscard]] Stored<void> add_example(const Row& row, std::size_t count_max) override;
+    [[nodiscard]] Stored<Row> find_example(const std::string& id) override;
+    [[nodiscard]] Stored<std::vector<Row>> list_examples() override;
+    [[nodiscard]] Stored<void> erase_example(const std::string& id) override;
+
+  private:
+    class Listener;
+    using ListenerMap = std::multimap<std::string, Listener*>;
+
+    SqliteStore(const std::filesystem::path& directory, int lock);
+
+    void prepare_schema(Database& database);
+    void recover(Database& database);
+    void after_commit(Database& database);
+
+    void append_event(Database& database, const std::string& id, const NewEvent& event);
+    void unlink_artifacts(Database& database, const std::string& id, bool keep_unfinished);
+    Stored<void> link_artifacts(
+        Database& database, const std::string& id, const std::vector<ArtifactLink>& artifacts
+    );
+
+    // Runs a read on a connection of its own.
+    template <class T>
+    Stored<T> with_reader(const std::function<Stored<T>(Database&)>& read);
+
+    std::string path_;
+    int lock_;
+    std::unique_ptr<FileArtifacts> artifacts_;
+
+    // Only the writer's thread uses these.
+    std::set<std::string> touched_;              // jobs whose listeners are told after the commit
+    std::vector<std::string> unlinked_digests_;  // files to look at after the commit
+
+    std::mutex readers_mutex_;
+    std::vector<std::unique_ptr<Database>> idle_readers_;
+
+    std::mutex listeners_mutex_;
+    ListenerMap listeners_;
+
+    std::unique_ptr<Writer> writer_;  // last: its thread uses all of the above
+};
+
+}  // namespace modelsynth::server

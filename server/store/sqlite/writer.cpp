@@ -1,0 +1,119 @@
+#include "server/store/sqlite/writer.h"
+
+#include <chrono>
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace {
+
+tl::unexpected<StoreError> unavailable(const std::string& why) {
+    return tl::unexpected(StoreError{StoreErrorCode::kUnavailable, why});
+}
+
+// Applies one operation, or leaves no trace of it.
+Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& operation) {
+    database.execute("SAVEPOINT operation");
+    Stored<void> outcome;
+    try {
+        outcome = operation.apply(database);
+    } catch (const SqliteError& error) {
+        outcome = unavailable(error.what());
+    }
+    if (!outcome) {
+        database.execute("ROLLBACK TO operation");
+    }
+    database.execute("RELEASE operation");
+    return outcome;
+}
+
+}  // namespace
+
+Writer::Writer(const std::string& path) : database_(path, Database::Mode::kWriter) {
+    thread_ = std::thread([this] { run(); });
+}
+
+Writer::~Writer() { close(); }
+
+void Writer::post(Operation operation) {
+    {
+        std::unique_lock lock(mutex_);
+        room_.wait(lock, [this] { return queue_.size() < kQueueMax || closed_; });
+        if (!closed_) {
+            queue_.push_back(std::move(operation));
+            work_.notify_one();
+            return;
+        }
+    }
+    operation.done(tl::unexpected(StoreError{StoreErrorCode::kClosed, "the store is closed"}));
+}
+
+void Writer::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+        work_.notify_one();
+        room_.notify_all();
+    }
+    if (thread_.joinable()) {
+        thread_.join();
+    }
+}
+
+void Writer::run() {
+    constexpr auto kIdle = std::chrono::seconds(5);
+    for (;;) {
+        std::deque<Operation> batch;
+        {
+            std::unique_lock lock(mutex_);
+            const bool has_work =
+                work_.wait_for(lock, kIdle, [this] { return !queue_.empty() || closed_; });
+            while (!queue_.empty() && batch.size() < kBatchMax) {
+                batch.push_back(std::move(queue_.front()));
+                queue_.pop_front();
+            }
+            room_.notify_all();
+            if (batch.empty() && closed_) {
+                break;
+            }
+            if (!has_work && database_.wal_pages() == 0) {
+                continue;
+            }
+        }
+        if (batch.empty()) {
+            database_.checkpoint(true);
+        } else {
+            commit(batch);
+        }
+    }
+    database_.checkpoint(true);
+}
+
+void Writer::commit(std::deque<Operation>& batch) {
+    std::vector<Stored<void>> outcomes;
+    try {
+        database_.execute("BEGIN IMMEDIATE");
+        for (const Operation& operation : batch) {
+            outcomes.push_back(apply_in_savepoint(database_, operation));
+        }
+        database_.execute("COMMIT");
+    } catch (const SqliteError& error) {
+        try {
+            database_.execute("ROLLBACK");
+        } catch (const SqliteError&) {
+            // There was no transaction; nothing is left to take back.
+        }
+        outcomes.assign(batch.size(), unavailable(error.what()));
+    }
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+        batch[i].done(std::move(outcomes[i]));
+    }
+    if (after_commit_) {
+        after_commit_(database_);
+    }
+    if (database_.wal_pages() > kCheckpointPages) {
+        database_.checkpoint(false);
+    }
+}
+
+}  // namespace modelsynth::server

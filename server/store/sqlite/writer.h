@@ -1,0 +1,88 @@
+#pragma once
+
+#include "server/store/sqlite/database.h"
+#include "server/store/types.h"
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace modelsynth::server {
+
+// The one thread that commits and checkpoints. It drains a bounded queue of operations into one
+// transaction each time (group commit), every operation in a savepoint of its own so that one
+// that fails does not spoil the rest, and tells the outcome only after the commit.
+class Writer {
+  public:
+    struct Operation {
+        // Changes the database. An error takes back what this operation did.
+        std::function<Stored<void>(Database&)> apply;
+        // Told after the commit, on the writer's thread, in order of submission.
+        std::function<void(Stored<void>)> done;
+    };
+
+    explicit Writer(const std::string& path);
+    ~Writer();
+
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    // Blocks while the queue is full. After close(), `done` is told kClosed at once.
+    void post(Operation operation);
+
+    // Runs `change` and waits for its commit.
+    template <class T>
+    Stored<T> call(std::function<Stored<T>(Database&)> change) {
+        std::promise<Stored<T>> promise;
+        auto future = promise.get_future();
+        auto value = std::make_shared<Stored<T>>(tl::unexpected(StoreError{}));
+        post(
+            {[value, &change](Database& database) -> Stored<void> {
+                 *value = change(database);
+                 if (!*value) {
+                     return tl::unexpected(value->error());
+                 }
+                 return {};
+             },
+             [value, &promise](Stored<void> committed) {
+                 if (!committed) {
+                     promise.set_value(tl::unexpected(std::move(committed.error())));
+                 } else {
+                     promise.set_value(std::move(*value));
+                 }
+             }}
+        );
+        return future.get();
+    }
+
+    // Runs on the writer's thread after each commit, once the operations were told.
+    void after_commit(std::function<void(Database&)> hook) { after_commit_ = std::move(hook); }
+
+    // Finishes what is queued and stops.
+    void close();
+
+  private:
+    void run();
+    void commit(std::deque<Operation>& batch);
+
+    static constexpr std::size_t kQueueMax = 4096;
+    static constexpr std::size_t kBatchMax = 512;
+    static constexpr int kCheckpointPages = 1000;
+
+    Database database_;
+    std::function<void(Database&)> after_commit_;
+    std::mutex mutex_;
+    std::condition_variable work_;
+    std::condition_variable room_;
+    std::deque<Operation> queue_;
+    bool closed_ = false;
+    std::thread thread_;
+};
+
+}  // namespace modelsynth::server

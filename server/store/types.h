@@ -1,0 +1,127 @@
+#pragma once
+
+#include "proto/job.h"
+#include "proto/timestamp.h"
+
+#include <tl/expected.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace modelsynth::server {
+
+// How a call of the store can fail.
+enum class StoreErrorCode : std::uint8_t {
+    kNotFound,
+    kConflict,     // same key with another request, an illegal transition, a missing digest
+    kQueueFull,    // as many jobs are queued as the caller allows
+    kLeaseLost,    // another holder now, or the job is gone
+    kInvalid,      // a malformed cursor
+    kCorrupt,      // a file is not what its digest says
+    kUnavailable,  // certainly not applied; the same call may be repeated
+    kClosed,       // the store is shutting down
+};
+
+struct StoreError {
+    StoreErrorCode code = StoreErrorCode::kUnavailable;
+    std::string message;
+};
+
+template <class T>
+using Stored = tl::expected<T, StoreError>;
+
+// A job as it is submitted.
+struct NewJob {
+    std::string id;
+    std::string solver;
+    std::uint64_t seed = 0;
+    std::int32_t priority = 0;
+    std::string request;          // JSON, what the job shows and what a worker runs
+    std::string example_id;       // empty: inline
+    std::string request_hash;     // of what the client sent, for idempotency
+    std::string idempotency_key;  // empty: none
+    std::optional<double> deadline_seconds;
+    proto::UnixMillis created = 0;
+};
+
+struct Submitted {
+    proto::Job job;
+    bool replayed = false;  // the key was known; this is the first answer's job
+};
+
+// The right to run a job. The token grows with every claim, so that a holder that was declared
+// dead cannot write any more.
+struct Lease {
+    std::string job_id;
+    std::uint64_t token = 0;
+};
+
+// A job handed to a worker.
+struct Claim {
+    Lease lease;
+    proto::Job job;
+    std::optional<double> deadline_seconds;
+    double solved_seconds = 0;        // of earlier claims that did not end; counts to the deadline
+    std::string solver_version;       // under which blocks_logged were made; empty: never started
+    std::uint32_t blocks_logged = 0;  // block events that are in the log already
+    std::uint64_t head = 0;           // newest seq
+    std::uint32_t fruitless_claims = 0;  // claims in a row that logged nothing new
+};
+
+struct NewEvent {
+    std::string type;
+    std::string fields;  // JSON object, see proto/job.h
+    proto::UnixMillis time = 0;
+};
+
+struct Event {
+    std::uint64_t seq = 0;
+    std::string type;
+    std::string fields;
+    proto::UnixMillis time = 0;
+};
+
+// Where a job's progress stands after an append.
+struct Progress {
+    std::uint32_t blocks_done = 0;
+    std::uint32_t blocks_total = 0;
+    double solved_seconds = 0;
+    std::string solver_version;
+};
+
+struct ArtifactLink {
+    std::string name;  // "model.glb", "labels", ...
+    std::string digest;
+};
+
+// How a job ended.
+struct Outcome {
+    proto::JobState state = proto::JobState::kFailed;
+    std::string result;  // JSON, for kSucceeded
+    std::string error;   // JSON, for kFailed
+    std::vector<ArtifactLink> artifacts;
+    proto::UnixMillis finished = 0;
+    std::optional<proto::UnixMillis> expires;
+};
+
+struct EventPage {
+    std::vector<Event> events;  // contiguous, ascending
+    std::uint64_t head = 0;     // newest seq of the log
+    bool ended = false;         // the newest event is the last there will be
+};
+
+struct JobQuery {
+    std::optional<proto::JobState> state;
+    std::size_t limit = 20;
+    std::string cursor;  // empty: from the newest
+};
+
+struct JobPage {
+    std::vector<proto::Job> jobs;  // newest first
+    std::optional<std::string> next;
+};
+
+}  // namespace modelsynth::server

@@ -1,0 +1,267 @@
+#include "server/stream/websocket.h"
+
+#include "proto/frame.h"
+#include "proto/job.h"
+#include "server/stream/event_cursor.h"
+#include "server/stream/on_pool.h"
+#include "solver/mesh/glb_writer.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/field.hpp>
+#include <boost/beast/websocket/stream.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using Socket = websocket::stream<beast::tcp_stream>;
+
+constexpr auto kToken = net::as_tuple(net::use_awaitable);
+
+// A client that needed this long for one write does not keep up.
+constexpr auto kSlowWrite = std::chrono::seconds(2);
+// ... and is then spared the events in between when there are more than this.
+constexpr std::uint64_t kLagMax = 64;
+constexpr std::size_t kMessageBytesMax = 4096;
+
+// What the two halves of a session share. Both run on the connection's strand.
+struct Session {
+    Session(beast::tcp_stream stream, const SocketUpgrade& wanted, const ConnectionContext& shared)
+        : socket(std::move(stream)),
+          upgrade(wanted),
+          context(shared),
+          cursor(
+              shared.api->service().events(),
+              *shared.pool,
+              socket.get_executor(),
+              wanted.job_id,
+              wanted.after
+          ) {}
+
+    Socket socket;
+    SocketUpgrade upgrade;
+    ConnectionContext context;
+    EventCursor cursor;
+    bool peer_gone = false;
+    websocket::close_reason closing;  // why we close; none: the peer closed
+    bool slow = false;
+    // A block's frame could not be had: the next frame is a whole state.
+    bool needs_whole = false;
+    std::uint64_t whole_seq = 0;  // of the whole state that was sent last
+};
+
+// Clients send nothing but control frames, which the library answers while a read is pending.
+net::awaitable<void> read_until_closed(Session& session) {
+    beast::flat_buffer buffer;
+    auto [error, bytes] = co_await session.socket.async_read(buffer, kToken);
+    if (!error) {
+        session.closing = {websocket::close_code::policy_error, "clients send no messages"};
+    } else if (error == websocket::error::message_too_big) {
+        session.closing = {websocket::close_code::too_big, "message too big"};
+    }
+    session.peer_gone = true;
+    session.cursor.wake();
+}
+
+net::awaitable<bool> write(Session& session, const std::string& bytes, bool binary) {
+    session.socket.binary(binary);
+    const auto begun = std::chrono::steady_clock::now();
+    auto buffer = net::buffer(bytes);
+    auto [error, count] = co_await session.socket.async_write(buffer, kToken);
+    session.slow = session.slow || std::chrono::steady_clock::now() - begun > kSlowWrite;
+    co_return !error && !session.peer_gone;
+}
+
+std::string patch_payload(const LiveJob& live, const Patch& patch, Partial partial) {
+    if (partial == Partial::kLabels) {
+        return proto::encode_labels(patch.labels);
+    }
+    // The region alone, in the whole model's frame.
+    Model model = {live.state().model.size, {}};
+    model.labels.assign(model.size.cell_count(), kNoLabel);
+    std::size_t next = 0;
+    for_each_cell(patch.region, [&](const Cell& cell) {
+        model.labels[model.size.index(cell)] = patch.labels[next++];
+    });
+    return write_glb(make_scene(live.example(), model, patch.region)).value_or("");
+}
+
+// The frame of an accepted block; nothing when it is not kept any more.
+std::optional<std::string> block_frame(
+    JobService& service, const SocketUpgrade& upgrade, std::uint64_t seq
+) {
+    const auto live = service.live().find(upgrade.job_id);
+    const auto patch = live ? live->patch(seq) : nullptr;
+    if (!patch) {
+        return std::nullopt;
+    }
+    const auto kind =
+        upgrade.partial == Partial::kLabels ? proto::FrameKind::kLabels : proto::FrameKind::kGlb;
+    return proto::encode_frame(
+        {kind, seq, patch->region, patch_payload(*live, *patch, upgrade.partial)}
+    );
+}
+
+struct WholeFrame {
+    std::uint64_t seq = 0;
+    std::string bytes;
+};
+
+std::optional<WholeFrame> whole_frame(JobService& service, const SocketUpgrade& upgrade) {
+    const auto whole = service.whole_state(upgrade.job_id);
+    if (!whole || !whole->state.any_block) {
+        return std::nullopt;
+    }
+    const Model& model = whole->state.model;
+    const Box box = Box::whole(model.size);
+    const bool labels = upgrade.partial == Partial::kLabels;
+    const std::string payload =
+        labels ? proto::encode_labels(model.labels)
+               : write_glb(make_scene(whole->example, model, box)).value_or("");
+    const auto kind = labels ? proto::FrameKind::kLabelsWhole : proto::FrameKind::kGlbWhole;
+    return WholeFrame{
+        whole->state.seq, proto::encode_frame({kind, whole->state.seq, box, payload})};
+}
+
+bool is_accepted_block(const Event& event) {
+    return event.type == "block" &&
+           event.fields.find("\"outcome\":\"accepted\"") != std::string::npos;
+}
+
+// Sends a whole state in place of the frames that could not be had.
+net::awaitable<bool> write_whole(Session& session) {
+    auto make = [&session] { return whole_frame(session.context.api->service(), session.upgrade); };
+    const auto whole = co_await on_pool(*session.context.pool, make);
+    session.needs_whole = false;
+    if (!whole) {
+        co_return true;
+    }
+    session.whole_seq = whole->seq;
+    co_return co_await write(session, whole->bytes, true);
+}
+
+net::awaitable<bool> write_event(Session& session, const Event& event) {
+    const std::string text = proto::event_json(event.seq, event.type, event.time, event.fields);
+    if (!co_await write(session, text, false)) {
+        co_return false;
+    }
+    // A whole state that was sent before may include this block already.
+    if (session.upgrade.partial == Partial::kNone || !is_accepted_block(event) ||
+        session.needs_whole || event.seq <= session.whole_seq) {
+        co_return true;
+    }
+    auto make = [&session, &event] {
+        return block_frame(session.context.api->service(), session.upgrade, event.seq);
+    };
+    const auto frame = co_await on_pool(*session.context.pool, make);
+    if (!frame) {
+        session.needs_whole = true;
+        co_return true;
+    }
+    co_return co_await write(session, *frame, true);
+}
+
+// For a reader that lags: one snapshot in place of the events up to the newest but the last.
+net::awaitable<bool> write_snapshot(Session& session, std::uint64_t head) {
+    auto find = [&session] { return session.context.api->service().find(session.upgrade.job_id); };
+    const auto job = co_await on_pool(*session.context.pool, find);
+    if (!job) {
+        co_return true;
+    }
+    // The last event is never replaced.
+    const std::uint64_t seq = proto::is_ended(job->state) ? head - 1 : head;
+    const std::string text = proto::event_json(
+        seq, "snapshot", job->created, proto::snapshot_fields(proto::to_json(*job))
+    );
+    session.cursor.skip_to(seq);
+    session.needs_whole = session.upgrade.partial != Partial::kNone;
+    session.slow = false;
+    co_return co_await write(session, text, false);
+}
+
+net::awaitable<void> write_events(Session& session) {
+    constexpr auto kWait = std::chrono::milliseconds(500);
+    bool open = true;
+    while (open && !session.peer_gone) {
+        if (session.context.counters->draining) {
+            session.closing = {websocket::close_code::going_away, "the server is stopping"};
+            break;
+        }
+        const auto batch = co_await session.cursor.next(kWait);
+        if (batch.gone) {
+            session.closing = {websocket::close_code::going_away, "the job was deleted"};
+            break;
+        }
+        for (const Event& event : batch.page.events) {
+            const bool last = batch.finished && event.seq == batch.page.head;
+            if (open && last && session.needs_whole) {
+                open = co_await write_whole(session);
+            }
+            if (open) {
+                open = co_await write_event(session, event);
+            }
+            const std::uint64_t lag = batch.page.head - event.seq;
+            if (open && session.slow && lag > kLagMax) {
+                open = co_await write_snapshot(session, batch.page.head);
+                break;
+            }
+        }
+        const bool caught_up = session.cursor.position() >= batch.page.head;
+        if (open && session.needs_whole && caught_up) {
+            open = co_await write_whole(session);
+        }
+        if (batch.finished && caught_up) {
+            session.closing = {websocket::close_code::normal, "the job has ended"};
+            break;
+        }
+    }
+    if (session.closing.code != websocket::close_code::none) {
+        auto reason = session.closing;
+        co_await session.socket.async_close(reason, kToken);
+    } else {
+        beast::get_lowest_layer(session.socket).close();
+    }
+}
+
+}  // namespace
+
+net::awaitable<void> serve_websocket(
+    beast::tcp_stream stream,
+    beast::http::request<beast::http::string_body> request,
+    SocketUpgrade upgrade,
+    ConnectionContext context
+) {
+    using namespace net::experimental::awaitable_operators;
+    stream.expires_never();  // the WebSocket keeps its own time
+    Session session(std::move(stream), upgrade, context);
+    auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+    timeout.handshake_timeout = std::chrono::seconds(10);
+    timeout.idle_timeout = std::chrono::seconds(60);
+    timeout.keep_alive_pings = true;
+    session.socket.set_option(timeout);
+    auto decorate = [](websocket::response_type& response) {
+        response.set(beast::http::field::sec_websocket_protocol, "modelsynth.v1");
+        response.set(beast::http::field::server, "modelsynthd");
+    };
+    session.socket.set_option(websocket::stream_base::decorator(decorate));
+    session.socket.read_message_max(kMessageBytesMax);
+    auto [error] = co_await session.socket.async_accept(request, kToken);
+    if (error) {
+        co_return;
+    }
+    co_await (read_until_closed(session) && write_events(session));
+}
+
+}  // namespace modelsynth::server
