@@ -283,7 +283,7 @@ OrderedJson write_parameters(const Parameters& parameters) {
         {"blocks", write_blocks(*parameters.blocks)},
         {"boundary", std::move(boundary)},
         {"order", order_name(parameters.order)},
-        {"weights", write_weights(parameters.weights)},
+        {"weights", write_weights(*parameters.weights)},
         {"constraints", std::move(constraints)}};
 }
 

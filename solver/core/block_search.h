@@ -108,7 +108,7 @@ class BlockSearch {
         std::vector<Word> sets(catalog_.all_labels().size());
         for (std::size_t site = 0; site < catalog_.site_count(); ++site) {
             const std::span<const Word> own = domains_.words(part_.global(static_cast<Site>(site)));
-            if (count_labels(own) == 0) {
+            if (is_empty(own)) {
                 impossible_ = static_cast<Site>(site);
                 return Propagation::kContradiction;
             }

@@ -6,6 +6,7 @@
 #include "solver/core/topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -37,11 +38,16 @@ class Catalog {
           relations_(relations),
           words_(kWords == 0 ? relations.words() : kWords),
           sets_(topology.site_count() * words_),
+          queue_(topology.site_count()),
           queued_(topology.site_count()),
           saved_(topology.site_count()),
-          support_(relations.count() * words_) {
+          support_(relations.count() * words_),
+          supported_(words_) {
         check(words_ == relations.words(), "a catalog of another width than its relations");
-        queue_.reserve(topology.site_count());
+        check(
+            T::kRelationCount == 0 || T::kRelationCount == relations.count(),
+            "a topology of other relations than given"
+        );
     }
 
     [[nodiscard]] std::size_t site_count() const { return queued_.size(); }
@@ -117,7 +123,7 @@ class Catalog {
         Word* set = sets_.data() + site * words();
         set[label / kWordBits] &= ~(Word{1} << (label % kWordBits));
         enqueue(site);
-        if (count_labels(labels(site)) == 0) {
+        if (is_empty(labels(site))) {
             emptied_ = site;
             return false;
         }
@@ -137,32 +143,22 @@ class Catalog {
     [[nodiscard]] Propagation propagate(const std::stop_token& stop) {
         constexpr std::size_t kStopInterval = 1024;
         std::size_t looked_at = 0;
-        for (std::size_t head = 0; head < queue_.size(); ++head) {
+        while (queue_length_ > 0) {
             if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
                 forget_queue();
                 return Propagation::kStopped;
             }
-            const Site site = queue_[head];
-            queued_[site] = 0;
+            const Site site = dequeue();
             collect_support(site);
             bool consistent = true;
             topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
-                if (consistent) {
-                    consistent = narrow(neighbour, support_.data() + relation * words());
-                }
+                consistent = consistent && narrow(neighbour, support_.data() + relation * words());
             });
             if (!consistent) {
                 forget_queue();
                 return Propagation::kContradiction;
             }
-            if (head > site_count()) {  // keeps the queue as short as the model
-                queue_.erase(
-                    queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(head) + 1
-                );
-                head = static_cast<std::size_t>(-1);
-            }
         }
-        queue_.clear();
         return Propagation::kConsistent;
     }
 
@@ -205,17 +201,35 @@ class Catalog {
     void clear_changed() { changed_.clear(); }
 
   private:
-    // support_[r] = the labels that some label left at the site allows along relation r.
+    // The width of support_ when the compiler may know it: then the sums below stay in registers.
+    static constexpr std::size_t kSupportWords = T::kRelationCount * kWords;
+
+    // support_[r] = the labels that some label left at the site allows along relation r. Sites
+    // often come one after the other with the same set; then it is there already.
     void collect_support(Site site) {
-        const std::size_t length = relations_.count() * words();
-        std::fill(support_.begin(), support_.end(), Word{0});
-        Word* support = support_.data();
-        for_each_label(labels(site), [&](Label label) {
-            const Word* row = relations_.row_data(label);
-            for (std::size_t word = 0; word < length; ++word) {
-                support[word] |= row[word];
-            }
-        });
+        const std::span<const Word> set = labels(site);
+        if (std::equal(set.begin(), set.end(), supported_.begin())) {
+            return;
+        }
+        std::copy(set.begin(), set.end(), supported_.begin());
+        if constexpr (kSupportWords > 0) {
+            std::array<Word, kSupportWords> sum = {};
+            for_each_label(set, [&](Label label) {
+                const Word* row = relations_.row_data(label);
+                for (std::size_t word = 0; word < kSupportWords; ++word) {
+                    sum[word] |= row[word];
+                }
+            });
+            std::copy(sum.begin(), sum.end(), support_.begin());
+        } else {
+            std::fill(support_.begin(), support_.end(), Word{0});
+            for_each_label(set, [&](Label label) {
+                const Word* row = relations_.row_data(label);
+                for (std::size_t word = 0; word < support_.size(); ++word) {
+                    support_[word] |= row[word];
+                }
+            });
+        }
     }
 
     void save(Site site) {
@@ -229,11 +243,21 @@ class Catalog {
         trail_words_.insert(trail_words_.end(), set, set + words());
     }
 
+    // The queue is a ring: a site is in it once at most, so it never overflows.
     void enqueue(Site site) {
         if (queued_[site] == 0) {
             queued_[site] = 1;
-            queue_.push_back(site);
+            const std::size_t end = queue_head_ + queue_length_++;
+            queue_[end < queue_.size() ? end : end - queue_.size()] = site;
         }
+    }
+
+    Site dequeue() {
+        const Site site = queue_[queue_head_];
+        queue_head_ = queue_head_ + 1 < queue_.size() ? queue_head_ + 1 : 0;
+        --queue_length_;
+        queued_[site] = 0;
+        return site;
     }
 
     void note_change(Site site) {
@@ -243,10 +267,9 @@ class Catalog {
     }
 
     void forget_queue() {
-        for (const Site site : queue_) {
-            queued_[site] = 0;
+        while (queue_length_ > 0) {
+            dequeue();
         }
-        queue_.clear();
     }
 
     void release() {
@@ -269,6 +292,8 @@ class Catalog {
     std::size_t words_;
     std::vector<Word> sets_;
     std::vector<Site> queue_;
+    std::size_t queue_head_ = 0;
+    std::size_t queue_length_ = 0;
     std::vector<std::uint8_t> queued_;
     std::vector<Site> trail_sites_;
     std::vector<Word> trail_words_;
@@ -276,6 +301,7 @@ class Catalog {
     std::uint64_t stamp_ = 0;
     std::size_t marks_ = 0;
     std::vector<Word> support_;
+    std::vector<Word> supported_;  // the set that support_ belongs to; empty at first, as it is
     std::vector<Site> changed_;
     bool tracking_ = false;
     Site emptied_ = 0;

@@ -22,6 +22,8 @@ struct Periodic {
 // Cost: one byte a cell. Thread-safe.
 class GridTopology {
   public:
+    static constexpr std::size_t kRelationCount = kDirectionCount;
+
     // Requires: every extent positive and fewer than 2^32 cells (checked).
     explicit GridTopology(const GridSize& size, Periodic periodic = {});
 

@@ -45,6 +45,30 @@ constexpr std::size_t count_labels(std::span<const Word> set) {
     return count;
 }
 
+// Whether the set has at least two labels; cheaper than counting.
+constexpr bool has_several(std::span<const Word> set) {
+    bool any = false;
+    for (const Word word : set) {
+        if (word == 0) {
+            continue;
+        }
+        if (any || (word & (word - 1)) != 0) {
+            return true;
+        }
+        any = true;
+    }
+    return false;
+}
+
+constexpr bool is_empty(std::span<const Word> set) {
+    for (const Word word : set) {
+        if (word != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // A set that owns its words: for boundaries, constraints and whatever is not in a hot loop.
 // A value; distinct objects may be used from distinct threads.
 class LabelSet {
@@ -71,7 +95,7 @@ class LabelSet {
                ((words_[label / kWordBits] >> (label % kWordBits)) & 1) != 0;
     }
 
-    [[nodiscard]] bool empty() const { return count() == 0; }
+    [[nodiscard]] bool empty() const { return is_empty(words_); }
 
     [[nodiscard]] std::size_t count() const { return count_labels(words_); }
 

@@ -32,7 +32,7 @@ class ScanPicker {
     bool next(CatalogType& catalog, Site& site) {
         while (position_ < order_.size()) {
             site = order_[position_];
-            if (count_labels(catalog.labels(site)) > 1) {
+            if (has_several(catalog.labels(site))) {
                 return true;
             }
             ++position_;
@@ -69,7 +69,7 @@ class EntropyPicker {
         while (!heap_.empty()) {
             const Entry least = heap_.front();
             site = least.second;
-            if (least.first == keys_[site] && count_labels(catalog.labels(site)) > 1) {
+            if (least.first == keys_[site] && has_several(catalog.labels(site))) {
                 return true;
             }
             std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
@@ -83,7 +83,7 @@ class EntropyPicker {
 
     template <class CatalogType>
     void push(const CatalogType& catalog, Site site) {
-        if (count_labels(catalog.labels(site)) < 2) {
+        if (!has_several(catalog.labels(site))) {
             return;
         }
         const std::uint64_t key =

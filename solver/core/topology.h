@@ -15,10 +15,12 @@ using Site = std::uint32_t;
 //
 // for_each_arc(site, visit) calls visit(Site far_end, RelationId) for every arc at the site. Both
 // ends see the arc, with relations that are each other's reverse. The number of visits and their
-// order are the same every time.
+// order are the same every time. A topology whose relations are few and known at compile time says
+// how many as `static constexpr std::size_t kRelationCount`; others have 0 there.
 template <class T>
 concept Topology = requires(const T& topology, Site site, void (*visit)(Site, RelationId)) {
     { topology.site_count() } -> std::convertible_to<std::size_t>;
+    { T::kRelationCount } -> std::convertible_to<std::size_t>;
     topology.for_each_arc(site, visit);
 };
 

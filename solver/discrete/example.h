@@ -47,6 +47,12 @@ using Boundary = std::array<SideBoundary, kDirectionCount>;
 inline constexpr std::array<const char*, kDirectionCount> kSideNames = {
     "east", "west", "top", "bottom", "south", "north"};
 
+// How often a piece is chosen against the others that are possible.
+enum class WeightRule : std::uint8_t {
+    kUniform,  // each by its own weight
+    kExample,  // each by its own weight times how often it stands in the example
+};
+
 // Two pieces that may be neighbours: `lower` at a cell, `upper` one cell on along the axis.
 struct AdjacentPair {
     std::uint8_t axis = 0;  // 0 x, 1 y, 2 z
@@ -68,7 +74,9 @@ struct Example {
     std::vector<AdjacentPair> adjacency;
     std::optional<Label> empty;
     Boundary boundary;
-    // What a job gets that asks for no size.
+    // What a job gets that does not ask. Labels alone, of which ground and air are most, give
+    // livelier models when they count alike.
+    WeightRule default_weights = WeightRule::kUniform;
     GridSize default_size = {40, 10, 40};
     std::shared_ptr<const Kit> kit = std::make_shared<Kit>();
 };

@@ -25,6 +25,9 @@ Parameters fill_defaults(Parameters parameters, const Example& example) {
     if (!parameters.blocks) {
         parameters.blocks = default_blocks(*parameters.size);
     }
+    if (!parameters.weights) {
+        parameters.weights = example.default_weights;
+    }
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
         if (!parameters.boundary[side]) {
             parameters.boundary[side] = example.boundary[side];

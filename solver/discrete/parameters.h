@@ -14,11 +14,6 @@
 
 namespace modelsynth::discrete {
 
-// How often a piece is chosen against the others that are possible.
-enum class WeightRule : std::uint8_t {
-    kUniform,  // all pieces alike
-    kExample,  // as often as in the example, times the piece's own weight
-};
 // A list gives the weights of the pieces named; the others have weight 1.
 using WeightList = std::vector<std::pair<std::string, double>>;
 using Weights = std::variant<WeightRule, WeightList>;
@@ -48,7 +43,7 @@ struct Parameters {
     std::optional<std::optional<Blocks>> blocks;
     std::array<std::optional<SideBoundary>, kDirectionCount> boundary;  // none: the example's
     Order order = Order::kScan;
-    Weights weights = WeightRule::kExample;
+    std::optional<Weights> weights;  // none: the example's default
     std::vector<Constraint> constraints;
 };
 

@@ -157,11 +157,9 @@ std::vector<double> weights_of(const Example& example, const Weights& weights) {
         }
         return values;
     }
-    if (std::get<WeightRule>(weights) == WeightRule::kUniform || example.cells.empty()) {
+    if (std::get<WeightRule>(weights) == WeightRule::kUniform) {
         for (std::size_t label = 0; label < count; ++label) {
-            values[label] = std::get<WeightRule>(weights) == WeightRule::kUniform
-                                ? 1.0
-                                : example.pieces[label].weight;
+            values[label] = example.pieces[label].weight;
         }
         return values;
     }
@@ -293,7 +291,7 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
     std::vector<Fault> faults;
     const LabelOfName labels = labels_by_name(example);
     find_boundary_faults(example, labels, parameters, faults);
-    if (const auto* list = std::get_if<WeightList>(&parameters.weights)) {
+    if (const auto* list = std::get_if<WeightList>(&*parameters.weights)) {
         for (const auto& [name, weight] : *list) {
             if (!labels.contains(name)) {
                 faults.push_back(
@@ -313,7 +311,7 @@ Result<Problem> make_problem(const Example& example, const Parameters& parameter
     const auto is_periodic = [&parameters](Direction side) {
         return parameters.boundary[static_cast<std::size_t>(side)]->kind == BoundaryKind::kPeriodic;
     };
-    const std::vector<double> weights = weights_of(example, parameters.weights);
+    const std::vector<double> weights = weights_of(example, *parameters.weights);
     Problem problem = {
         size,
         {is_periodic(Direction::kEast),

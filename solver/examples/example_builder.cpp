@@ -16,6 +16,8 @@ void require(bool condition, const std::string& why) { check(condition, why.c_st
 ExampleBuilder::ExampleBuilder(std::string name, double width_m, double height_m, double depth_m) {
     example_.name = std::move(name);
     example_.cell = {width_m, height_m, depth_m};
+    // Layouts are drawn with the shares that the models should have.
+    example_.default_weights = discrete::WeightRule::kExample;
 }
 
 MaterialId ExampleBuilder::add_material(Material material) {

@@ -1,0 +1,148 @@
+// Times discrete synthesis and prints a table. Medians over seeds, one thread.
+//
+//   solver_bench [--data DIR] [--seeds N]
+//
+// DIR holds label grids in the example format (castle.json, ...); built-in examples are timed in
+// any case.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/example_codec.h"
+#include "solver/discrete/synthesis.h"
+#include "solver/examples/built_in.h"
+
+namespace {
+
+namespace discrete = modelsynth::discrete;
+using modelsynth::GridSize;
+
+class Silent final : public modelsynth::Observer {
+  public:
+    void on_start(std::uint32_t, std::span<const modelsynth::Label>) override {}
+
+    void on_block(const modelsynth::BlockReport&) override {}
+};
+
+struct Times {
+    std::vector<double> milliseconds;
+    std::uint32_t accepted = 0;
+    std::uint32_t reverted = 0;
+    double changed = 0;
+    std::size_t failures = 0;
+};
+
+Times measure(
+    const discrete::Example& example, const GridSize& size, bool in_blocks, int seeds
+) {
+    discrete::Parameters parameters;
+    parameters.size = size;
+    if (!in_blocks) {
+        parameters.blocks = std::optional<discrete::Blocks>();
+    }
+    parameters = fill_defaults(parameters, example);
+    Times times;
+    for (int seed = 0; seed < seeds; ++seed) {
+        Silent observer;
+        const auto begun = std::chrono::steady_clock::now();
+        const auto model = discrete::synthesise(
+            example, parameters, static_cast<std::uint64_t>(seed), observer, {}
+        );
+        const std::chrono::duration<double, std::milli> taken =
+            std::chrono::steady_clock::now() - begun;
+        times.milliseconds.push_back(taken.count());
+        if (model) {
+            times.accepted += model->stats.blocks_accepted;
+            times.reverted += model->stats.blocks_reverted;
+            times.changed += model->stats.changed;
+        } else {
+            ++times.failures;
+        }
+    }
+    std::sort(times.milliseconds.begin(), times.milliseconds.end());
+    return times;
+}
+
+void print(
+    const char* name, const discrete::Example& example, const GridSize& size, bool in_blocks,
+    int seeds
+) {
+    const Times times = measure(example, size, in_blocks, seeds);
+    const double solved = static_cast<double>(static_cast<std::size_t>(seeds) - times.failures);
+    std::printf(
+        "| %-13s | %4zu | %3d x %2d x %3d | %-6s | %9.2f | %9.2f | %5u / %-4u | %5.0f %% | %zu |\n",
+        name,
+        example.pieces.size(),
+        size.x,
+        size.y,
+        size.z,
+        in_blocks ? "blocks" : "whole",
+        times.milliseconds[times.milliseconds.size() / 2],
+        times.milliseconds.back(),
+        times.accepted,
+        times.reverted,
+        solved > 0 ? 100 * times.changed / solved : 0.0,
+        times.failures
+    );
+    std::fflush(stdout);
+}
+
+std::optional<discrete::Example> load(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    const auto upload = modelsynth::proto::parse_example(text, {});
+    if (!upload) {
+        std::fprintf(stderr, "%s: %s\n", path.c_str(), upload.error().detail.c_str());
+        return std::nullopt;
+    }
+    return *upload->example;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string data;
+    int seeds = 20;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const std::string option = argv[i];
+        if (option == "--data") {
+            data = argv[i + 1];
+        } else if (option == "--seeds") {
+            seeds = std::max(1, std::atoi(argv[i + 1]));
+        }
+    }
+    std::printf(
+        "| example       |   k  | cells          | how    | median ms |    max ms | acc. / rev.  | "
+        "changed | failed |\n"
+        "|---------------|------|----------------|--------|-----------|-----------|--------------|-"
+        "--------|--------|\n"
+    );
+    for (const auto& example : modelsynth::examples::built_in()) {
+        const std::int32_t y = example->default_size.y;
+        print(example->name.c_str(), *example, {40, y, 40}, true, seeds);
+        print(example->name.c_str(), *example, {40, y, 40}, false, std::min(seeds, 5));
+        print(example->name.c_str(), *example, {100, y, 100}, true, std::min(seeds, 5));
+    }
+    for (const char* name : {"castle", "city", "canyon", "escheresque", "simple"}) {
+        const auto path = std::filesystem::path(data) / (std::string(name) + ".json");
+        if (data.empty() || !std::filesystem::exists(path)) {
+            continue;
+        }
+        const auto example = load(path);
+        if (!example) {
+            return 1;
+        }
+        const std::string label = std::string(name) + ".json";
+        print(label.c_str(), *example, {40, 10, 40}, true, seeds);
+        print(label.c_str(), *example, {40, 10, 40}, false, std::min(seeds, 5));
+    }
+    return 0;
+}
