@@ -1,0 +1,229 @@
+#include "solver/examples/canyon_rock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace modelsynth::examples {
+
+namespace {
+
+constexpr float kHalf = kCanyonHalf;
+constexpr float kTop = kCanyonCell;
+constexpr float kFloor = kCanyonGround;
+
+// The cracks of the beds that two pieces on top of each other share.
+constexpr std::uint32_t kJointSeed = 7;
+
+struct Ray {
+    float u;
+    float v;
+};
+
+Ray ray(int index) {
+    const float angle = std::numbers::pi_v<float> / 2 * static_cast<float>(index) /
+                        static_cast<float>(Contour::kSegments);
+    return {std::cos(angle), std::sin(angle)};
+}
+
+// Corners are a little squarer than a circle; the ends stay where they are.
+float squared(const Ray& r) { return 1 + 0.2F * r.u * r.v; }
+
+// Rock breaks in blocks: points two by two stand out or back together. None at the cell walls.
+float crack(std::uint32_t seed, int index, int segments) {
+    constexpr float kDepth = 0.1F;
+    if (seed == 0 || index == 0 || index == segments) {
+        return 0;
+    }
+    const auto block = (static_cast<std::uint32_t>(index) + seed % 2) / 2;
+    return kDepth * (2 * scatter(seed, block) - 1);
+}
+
+Vec3 lifted(const Point2& point, float y) { return {point.u, y, point.v}; }
+
+}  // namespace
+
+Point2 Contour::at(int index, float distance) const {
+    const Ray r = ray(index);
+    switch (shape_) {
+        case CliffShape::kConvex: {
+            const float radius = (kHalf + distance) * squared(r);
+            return {-kHalf + radius * r.u, kHalf - radius * r.v};
+        }
+        case CliffShape::kConcave: {
+            const float radius = (kHalf - distance) * squared(r);
+            return {kHalf - radius * r.v, -kHalf + radius * r.u};
+        }
+        case CliffShape::kEdge:
+            break;
+    }
+    return {distance, kHalf - kCanyonCell * static_cast<float>(index) / kSegments};
+}
+
+Point2 Contour::outer(int index) const {
+    const Ray r = ray(index);
+    const float reach = kCanyonCell / std::max(r.u, r.v);
+    switch (shape_) {
+        case CliffShape::kConvex:
+            return {-kHalf + reach * r.u, kHalf - reach * r.v};
+        case CliffShape::kConcave:
+            return {kHalf, -kHalf};
+        case CliffShape::kEdge:
+            break;
+    }
+    return {kHalf, at(index, 0).v};
+}
+
+Point2 Contour::inner(int index) const {
+    const Ray r = ray(index);
+    const float reach = kCanyonCell / std::max(r.u, r.v);
+    switch (shape_) {
+        case CliffShape::kConvex:
+            return {-kHalf, kHalf};
+        case CliffShape::kConcave:
+            return {kHalf - reach * r.v, -kHalf + reach * r.u};
+        case CliffShape::kEdge:
+            break;
+    }
+    return {-kHalf, at(index, 0).v};
+}
+
+void sweep_section(
+    MeshBuilder& mesh,
+    const std::function<Point2(int index, float distance)>& line,
+    int segments,
+    const std::vector<SectionStop>& section
+) {
+    const auto place = [&](const SectionStop& stop, int index) {
+        return lifted(line(index, stop.distance + crack(stop.seed, index, segments)), stop.y);
+    };
+    for (std::size_t k = 0; k + 1 < section.size(); ++k) {
+        const SectionStop& low = section[k];
+        const SectionStop& high = section[k + 1];
+        mesh.material(low.material);
+        for (int i = 0; i < segments; ++i) {
+            mesh.tint(0.88F + 0.12F * scatter(low.seed + 100, static_cast<std::uint32_t>(i) / 2));
+            mesh.quad(place(low, i), place(low, i + 1), place(high, i + 1), place(high, i));
+        }
+    }
+    mesh.tint(1);
+}
+
+void sweep_section(
+    MeshBuilder& mesh, const Contour& contour, const std::vector<SectionStop>& section
+) {
+    const auto line = [&contour](int index, float distance) { return contour.at(index, distance); };
+    sweep_section(mesh, line, Contour::kSegments, section);
+}
+
+void ground_outside(MeshBuilder& mesh, const Contour& contour, float distance, float y) {
+    for (int i = 0; i < Contour::kSegments; ++i) {
+        mesh.quad(
+            lifted(contour.at(i, distance), y),
+            lifted(contour.outer(i), y),
+            lifted(contour.outer(i + 1), y),
+            lifted(contour.at(i + 1, distance), y)
+        );
+    }
+}
+
+void ground_inside(MeshBuilder& mesh, const Contour& contour, float distance, float y) {
+    for (int i = 0; i < Contour::kSegments; ++i) {
+        mesh.quad(
+            lifted(contour.inner(i), y),
+            lifted(contour.at(i, distance), y),
+            lifted(contour.at(i + 1, distance), y),
+            lifted(contour.inner(i + 1), y)
+        );
+    }
+}
+
+std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind kind) {
+    const auto [red, orange, cream, dark, sand, grass] = std::array{
+        palette.red, palette.orange, palette.cream, palette.dark, palette.sand, palette.grass};
+    switch (kind) {
+        case CliffKind::kValleyFoot:
+            return {
+                {1.0F, kFloor, sand},
+                {0.62F, 0.8F, red, 22},
+                {0.42F, 1.2F, red, 23},
+                {0.26F, 1.2F, dark, 24},
+                {0.22F, 1.8F, dark, 24},
+                {0.1F, 1.8F, cream, 25},
+                {0.1F, 2.0F, cream, 25},
+                {0, 2.0F, orange, kJointSeed},
+                {0, kTop, orange, kJointSeed}};
+        case CliffKind::kMiddle:
+            return {
+                {0, 0, orange, kJointSeed},
+                {0, 0.6F, orange, kJointSeed},
+                {0.16F, 0.66F, red, 31},
+                {0.14F, 1.2F, red, 31},
+                {0.02F, 1.24F, cream, 32},
+                {0.02F, 1.4F, cream, 32},
+                {0.15F, 1.4F, red, 33},
+                {0.2F, 1.9F, dark, 33},
+                {0.14F, 2.2F, orange, 34},
+                {0, 2.3F, orange, kJointSeed},
+                {0, kTop, orange, kJointSeed}};
+        case CliffKind::kRim:
+            return {
+                {0, 0, orange, kJointSeed},
+                {0, 0.1F, orange, kJointSeed},
+                {0.2F, 0.1F, cream, 41},
+                {0.26F, 0.36F, cream, 41},
+                {0.12F, kFloor, cream, 41},
+                {-0.3F, kFloor, cream}};
+        case CliffKind::kTerraceFoot:
+            return {
+                {0.8F, kFloor, grass},
+                {0.45F, 0.72F, red, 52},
+                {0.3F, 0.95F, red, 53},
+                {0.12F, 1.0F, orange, 53},
+                {0.1F, 1.5F, cream, 54},
+                {0.2F, 1.5F, cream, 55},
+                {0.2F, 1.72F, red, 55},
+                {0.1F, 1.78F, red, 56},
+                {0.06F, 2.3F, orange, 56},
+                {0, 2.35F, orange, kJointSeed},
+                {0, kTop, orange, kJointSeed}};
+    }
+    return {};
+}
+
+void shade_cliff(MeshBuilder& mesh, CliffKind kind) {
+    const bool is_foot = kind == CliffKind::kValleyFoot || kind == CliffKind::kTerraceFoot;
+    mesh.shade([is_foot](const Vec3& position, const Vec3& normal) {
+        const float rise = is_foot ? std::clamp((position.y - kFloor) / 1.2F, 0.0F, 1.0F) : 1.0F;
+        return (0.78F + 0.22F * rise) * (normal.y < -0.3F ? 0.7F : 1.0F);
+    });
+}
+
+MeshBuilder make_cliff(const CanyonPalette& palette, CliffKind kind, CliffShape shape) {
+    MeshBuilder mesh;
+    const Contour contour(shape);
+    const std::vector<SectionStop> section = cliff_section(palette, kind);
+    sweep_section(mesh, contour, section);
+    shade_cliff(mesh, kind);
+    // What is flat has no shade, so that it meets the plain ground next to it.
+    switch (kind) {
+        case CliffKind::kValleyFoot:
+            mesh.material(palette.sand);
+            ground_outside(mesh, contour, section.front().distance, kFloor);
+            break;
+        case CliffKind::kTerraceFoot:
+            mesh.material(palette.grass);
+            ground_outside(mesh, contour, section.front().distance, kFloor);
+            break;
+        case CliffKind::kRim:
+            mesh.material(palette.grass);
+            ground_inside(mesh, contour, section.back().distance, kFloor);
+            break;
+        case CliffKind::kMiddle:
+            break;
+    }
+    return mesh;
+}
+
+}  // namespace modelsynth::examples
