@@ -55,12 +55,21 @@ struct ArchRing {
     std::uint32_t seed;
 };
 
+// The beds of an arch lie level, as those of the cliffs.
+MaterialId bed_of_arch(const CanyonPalette& palette, float y) {
+    return y < 0.75F   ? palette.orange
+           : y < 1.3F  ? palette.red
+           : y < 1.55F ? palette.cream
+           : y < 2.2F  ? palette.red
+                       : palette.orange;
+}
+
 // Rings are joined in order, the hand of which is that of a shaft from below to above.
 void add_tube(MeshBuilder& mesh, const CanyonPalette& palette, const std::vector<ArchRing>& rings) {
     constexpr int kSides = 9;
     const auto at = [](const ArchRing& ring, int side) {
         const auto index = static_cast<std::uint32_t>(side % kSides);
-        const float uneven = ring.seed == 0 ? 1.0F : 0.88F + 0.24F * scatter(ring.seed, index);
+        const float uneven = ring.seed == 0 ? 1.0F : 0.82F + 0.34F * scatter(ring.seed, index);
         const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(index) / kSides;
         const float reach = ring.radial * uneven * std::cos(angle);
         return Vec3{
@@ -71,8 +80,10 @@ void add_tube(MeshBuilder& mesh, const CanyonPalette& palette, const std::vector
     for (std::size_t k = 0; k + 1 < rings.size(); ++k) {
         for (int s = 0; s < kSides; ++s) {
             const auto index = static_cast<std::uint32_t>(s);
-            const float shade = scatter(rings[k].seed + 70, index);
-            mesh.material(shade > 0.62F ? palette.orange : palette.red);
+            const float y = (at(rings[k], s).y + at(rings[k], s + 1).y + at(rings[k + 1], s).y +
+                             at(rings[k + 1], s + 1).y) /
+                            4;
+            mesh.material(bed_of_arch(palette, y));
             mesh.tint(0.86F + 0.14F * scatter(rings[k].seed + 90, index));
             mesh.quad(
                 at(rings[k], s), at(rings[k], s + 1), at(rings[k + 1], s + 1), at(rings[k + 1], s)
@@ -86,9 +97,10 @@ void shade_under(MeshBuilder& mesh) {
     mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.3F ? 0.75F : 1.0F; });
 }
 
-constexpr float kLegRadial = 0.85F;
-constexpr float kLegDepth = 0.8F;
-constexpr float kSpanRadial = 0.55F;
+constexpr float kLegRadial = 1.0F;
+constexpr float kLegDepth = 1.0F;
+constexpr float kSpanRadial = 0.62F;
+constexpr float kSpanDepth = 0.85F;
 constexpr float kSpanHeight = 1.9F;
 
 }  // namespace
@@ -105,8 +117,8 @@ MeshBuilder make_stream(const CanyonPalette& palette) {
          {-1.05F, kFloor, palette.orange}}
     );
     mesh.material(palette.sand);
-    ground_outside(mesh, contour, 1.05F, kFloor);
-    ground_inside(mesh, contour, -1.05F, kFloor);
+    ground_outside(mesh, contour, {1.05F, kFloor, palette.sand});
+    ground_inside(mesh, contour, {-1.05F, kFloor, palette.sand});
     add_lump(mesh, {0.75F, 0.1F, -0.6F}, 0.2F, 0.3F, palette.red, 303);
     add_lump(mesh, {-0.3F, 0.1F, 0.5F}, 0.16F, 0.2F, palette.cream, 304);
     add_tuft(mesh, {-1.15F, kFloor, 0.2F}, 0.5F, palette.green, 305);
@@ -126,8 +138,8 @@ MeshBuilder make_stream_bend(const CanyonPalette& palette) {
          {-1.05F, kFloor, palette.orange}}
     );
     mesh.material(palette.sand);
-    ground_outside(mesh, contour, 1.05F, kFloor);
-    ground_inside(mesh, contour, -1.05F, kFloor);
+    ground_outside(mesh, contour, {1.05F, kFloor, palette.sand});
+    ground_inside(mesh, contour, {-1.05F, kFloor, palette.sand});
     add_lump(mesh, {-0.9F, kFloor - 0.05F, 0.8F}, 0.35F, 0.4F, palette.red, 312);
     add_tuft(mesh, {-1.1F, kFloor, 0.2F}, 0.5F, palette.green, 313);
     add_tuft(mesh, {1.2F, kFloor, -1.2F}, 0.35F, palette.green, 314);
@@ -413,15 +425,16 @@ MeshBuilder make_arch_foot(const CanyonPalette& palette) {
     add_tube(
         mesh,
         palette,
-        {{0, kFloor - 0.1F, 0, 1.3F, 1.25F, 601},
-         {0, 1.0F, 0, 1.02F, 1.0F, 602},
-         {0, 1.7F, 0, 0.92F, 0.85F, 603},
-         {0, 2.3F, 0, 0.95F, 0.9F, 604},
+        {{0, kFloor - 0.1F, 0, 1.4F, 1.4F, 601},
+         {0, 0.95F, 0, 1.2F, 1.2F, 602},
+         {0, 1.35F, 0, 1.05F, 1.05F, 603},
+         {0, 1.5F, 0, 0.95F, 0.95F, 606},
+         {0, 2.2F, 0, 1.08F, 1.05F, 604},
          {0, kTop, 0, kLegRadial, kLegDepth, 0}}
     );
     mesh.shade_upwards(0.7F, 2.2F);
     add_ground(mesh, palette.sand, 211);
-    add_lump(mesh, {1.05F, kFloor - 0.03F, 1.05F}, 0.28F, 0.3F, palette.red, 605);
+    add_lump(mesh, {1.15F, kFloor - 0.03F, 1.15F}, 0.28F, 0.3F, palette.red, 605);
     return mesh;
 }
 
@@ -431,9 +444,10 @@ MeshBuilder make_arch_shaft(const CanyonPalette& palette) {
         mesh,
         palette,
         {{0, 0, 0, kLegRadial, kLegDepth, 0},
-         {0, 0.9F, 0, 0.9F, 0.86F, 611},
-         {0, 1.5F, 0, 0.78F, 0.72F, 612},
-         {0, 2.2F, 0, 0.84F, 0.82F, 613},
+         {0, 0.7F, 0, 1.08F, 1.0F, 611},
+         {0, 1.3F, 0, 0.92F, 0.86F, 612},
+         {0, 1.5F, 0, 0.86F, 0.86F, 614},
+         {0, 2.2F, 0, 0.98F, 0.95F, 613},
          {0, kTop, 0, kLegRadial, kLegDepth, 0}}
     );
     return mesh;
@@ -442,21 +456,20 @@ MeshBuilder make_arch_shaft(const CanyonPalette& palette) {
 MeshBuilder make_arch_shoulder(const CanyonPalette& palette) {
     // A quarter turn about the cell's lower east edge, from upright to level.
     MeshBuilder mesh;
-    constexpr int kParts = 5;
+    constexpr int kParts = 6;
     std::vector<ArchRing> rings;
     for (int part = 0; part <= kParts; ++part) {
         const float share = static_cast<float>(part) / kParts;
         const float turn = share * std::numbers::pi_v<float> / 2;
-        const float bulge = 0.25F * std::sin(2 * turn);
+        const float bulge = 0.22F * std::sin(2 * turn);
+        const bool at_end = part == 0 || part == kParts;
         rings.push_back(
-            {kHalf - kHalf * std::cos(turn) - bulge * 0.7F,
+            {kHalf - kHalf * std::cos(turn) - bulge * 0.5F,
              kSpanHeight * std::sin(turn) + bulge * 0.5F,
              -turn,
              kLegRadial + (kSpanRadial - kLegRadial) * share,
-             kLegDepth,
-             part == 0        ? 0U
-             : part == kParts ? 0U
-                              : 620U + static_cast<std::uint32_t>(part)}
+             kLegDepth + (kSpanDepth - kLegDepth) * share,
+             at_end ? 0U : 620U + static_cast<std::uint32_t>(part)}
         );
     }
     add_tube(mesh, palette, rings);
@@ -470,11 +483,11 @@ MeshBuilder make_arch_span(const CanyonPalette& palette) {
     add_tube(
         mesh,
         palette,
-        {{-kHalf, kSpanHeight, kDown, kSpanRadial, kLegDepth, 0},
-         {-0.7F, kSpanHeight + 0.05F, kDown, 0.5F, 0.74F, 631},
-         {0, kSpanHeight, kDown, 0.47F, 0.8F, 632},
-         {0.7F, kSpanHeight + 0.05F, kDown, 0.52F, 0.74F, 633},
-         {kHalf, kSpanHeight, kDown, kSpanRadial, kLegDepth, 0}}
+        {{-kHalf, kSpanHeight, kDown, kSpanRadial, kSpanDepth, 0},
+         {-0.8F, kSpanHeight + 0.12F, kDown, 0.55F, 0.8F, 631},
+         {0, kSpanHeight + 0.2F, kDown, 0.46F, 0.75F, 632},
+         {0.8F, kSpanHeight + 0.12F, kDown, 0.52F, 0.8F, 633},
+         {kHalf, kSpanHeight, kDown, kSpanRadial, kSpanDepth, 0}}
     );
     shade_under(mesh);
     return mesh;

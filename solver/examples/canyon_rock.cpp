@@ -28,19 +28,24 @@ Ray ray(int index) {
 }
 
 // Corners are a little squarer than a circle; the ends stay where they are.
-float squared(const Ray& r) { return 1 + 0.2F * r.u * r.v; }
+float squared(const Ray& r) { return 1 + 0.4F * r.u * r.v; }
 
 // Rock breaks in blocks: points two by two stand out or back together. None at the cell walls.
 float crack(std::uint32_t seed, int index, int segments) {
-    constexpr float kDepth = 0.1F;
+    const float depth = seed == kJointSeed ? 0.1F : 0.17F;
     if (seed == 0 || index == 0 || index == segments) {
         return 0;
     }
     const auto block = (static_cast<std::uint32_t>(index) + seed % 2) / 2;
-    return kDepth * (2 * scatter(seed, block) - 1);
+    return depth * (2 * scatter(seed, block) - 1);
 }
 
 Vec3 lifted(const Point2& point, float y) { return {point.u, y, point.v}; }
+
+Vec3 place(const Contour& contour, const SectionStop& stop, int index) {
+    const float distance = stop.distance + crack(stop.seed, index, Contour::kSegments);
+    return lifted(contour.at(index, distance), stop.y);
+}
 
 }  // namespace
 
@@ -117,24 +122,26 @@ void sweep_section(
     sweep_section(mesh, line, Contour::kSegments, section);
 }
 
-void ground_outside(MeshBuilder& mesh, const Contour& contour, float distance, float y) {
+void ground_outside(MeshBuilder& mesh, const Contour& contour, const SectionStop& stop) {
+    const auto start = [&](int index) { return place(contour, stop, index); };
     for (int i = 0; i < Contour::kSegments; ++i) {
         mesh.quad(
-            lifted(contour.at(i, distance), y),
-            lifted(contour.outer(i), y),
-            lifted(contour.outer(i + 1), y),
-            lifted(contour.at(i + 1, distance), y)
+            start(i),
+            lifted(contour.outer(i), stop.y),
+            lifted(contour.outer(i + 1), stop.y),
+            start(i + 1)
         );
     }
 }
 
-void ground_inside(MeshBuilder& mesh, const Contour& contour, float distance, float y) {
+void ground_inside(MeshBuilder& mesh, const Contour& contour, const SectionStop& stop) {
+    const auto start = [&](int index) { return place(contour, stop, index); };
     for (int i = 0; i < Contour::kSegments; ++i) {
         mesh.quad(
-            lifted(contour.inner(i), y),
-            lifted(contour.at(i, distance), y),
-            lifted(contour.at(i + 1, distance), y),
-            lifted(contour.inner(i + 1), y)
+            lifted(contour.inner(i), stop.y),
+            start(i),
+            start(i + 1),
+            lifted(contour.inner(i + 1), stop.y)
         );
     }
 }
@@ -145,7 +152,7 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
     switch (kind) {
         case CliffKind::kValleyFoot:
             return {
-                {1.0F, kFloor, sand},
+                {0.95F, kFloor, sand, 21},
                 {0.62F, 0.8F, red, 22},
                 {0.42F, 1.2F, red, 23},
                 {0.26F, 1.2F, dark, 24},
@@ -174,10 +181,10 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
                 {0.2F, 0.1F, cream, 41},
                 {0.26F, 0.36F, cream, 41},
                 {0.12F, kFloor, cream, 41},
-                {-0.3F, kFloor, cream}};
+                {-0.16F, kFloor, cream, 43}};
         case CliffKind::kTerraceFoot:
             return {
-                {0.8F, kFloor, grass},
+                {0.75F, kFloor, grass, 51},
                 {0.45F, 0.72F, red, 52},
                 {0.3F, 0.95F, red, 53},
                 {0.12F, 1.0F, orange, 53},
@@ -210,15 +217,15 @@ MeshBuilder make_cliff(const CanyonPalette& palette, CliffKind kind, CliffShape 
     switch (kind) {
         case CliffKind::kValleyFoot:
             mesh.material(palette.sand);
-            ground_outside(mesh, contour, section.front().distance, kFloor);
+            ground_outside(mesh, contour, section.front());
             break;
         case CliffKind::kTerraceFoot:
             mesh.material(palette.grass);
-            ground_outside(mesh, contour, section.front().distance, kFloor);
+            ground_outside(mesh, contour, section.front());
             break;
         case CliffKind::kRim:
             mesh.material(palette.grass);
-            ground_inside(mesh, contour, section.back().distance, kFloor);
+            ground_inside(mesh, contour, section.back());
             break;
         case CliffKind::kMiddle:
             break;

@@ -62,10 +62,10 @@ void sweep_section(
 void sweep_section(
     MeshBuilder& mesh, const Contour& contour, const std::vector<SectionStop>& section
 );
-// The flat ground between the line at `distance` and the cell walls, on the air side or on the
-// rock side.
-void ground_outside(MeshBuilder& mesh, const Contour& contour, float distance, float y);
-void ground_inside(MeshBuilder& mesh, const Contour& contour, float distance, float y);
+// The flat ground between a stop of a section and the cell walls, on the air side or on the rock
+// side.
+void ground_outside(MeshBuilder& mesh, const Contour& contour, const SectionStop& stop);
+void ground_inside(MeshBuilder& mesh, const Contour& contour, const SectionStop& stop);
 
 // The cross-section of a kind of cliff.
 [[nodiscard]] std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind kind);
