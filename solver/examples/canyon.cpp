@@ -27,13 +27,13 @@ CanyonPalette add_materials(ExampleBuilder& builder) {
         return builder.add_material({name, srgb(hex), 0, 0.92F});
     };
     return {
-        rock("red rock", 0xBE5A38),
-        rock("orange rock", 0xD98650),
-        rock("cream rock", 0xEBCB9C),
+        rock("red rock", 0xC2573A),
+        rock("orange rock", 0xDE8A50),
+        rock("cream rock", 0xF0D0A0),
         rock("dark rock", 0x8C3B2B),
-        rock("sand", 0xE3B681),
-        rock("dry grass", 0xB5A55C),
-        rock("green", 0x6B8A58),
+        rock("sand", 0xE6B98A),
+        rock("dry grass", 0xC4A75A),
+        rock("green", 0x628C5C),
         builder.add_material({"water", srgb(0x2FA7A9), 0, 0.25F}),
         rock("wood", 0x6B4A34)};
 }
@@ -64,10 +64,10 @@ void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
     builder.add_piece('p', "pebbles", make_pebbles(palette));
     builder.add_piece('c', "saguaro", make_saguaro(palette));
     builder.add_piece('s', "sage", make_sage(palette));
-    builder.add_piece('o', "boulders", make_boulders(palette));
-    builder.add_piece('t', "tufts", make_tufts(palette));
-    builder.add_piece('j', "juniper", make_juniper(palette));
-    builder.add_turned(kHouse, "house", make_house(palette));
+    builder.add_piece('o', "boulders", make_boulders(palette), 1.5);
+    builder.add_piece('t', "tufts", make_tufts(palette), 3);
+    builder.add_piece('j', "juniper", make_juniper(palette), 2);
+    builder.add_turned(kHouse, "house", make_house(palette), 4);
 
     // As built these run to the south; the names of turns count from the east.
     const auto from_east = [](MeshBuilder mesh) {
@@ -78,20 +78,20 @@ void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
     builder.add_axial("-|", "stream", from_east(make_stream(palette)));
     builder.add_turned(kStreamBend, "stream_bend", make_stream_bend(palette));
     builder.add_turned(kPool, "pool", from_east(make_pool(palette)));
-    builder.add_turned(kSpring, "spring", make_spring(palette));
+    builder.add_turned(kSpring, "spring", make_spring(palette), 3);
 
-    builder.add_turned(kStair, "stair", make_stair(palette, CliffKind::kValleyFoot));
+    builder.add_turned(kStair, "stair", make_stair(palette, CliffKind::kValleyFoot), 5);
     builder.add_turned(
         kTerraceStair, "terrace_stair", make_stair(palette, CliffKind::kTerraceFoot)
     );
     builder.add_turned(kStairHead, "stair_head", make_stair_head(palette));
-    builder.add_axial("=\"", "bridge", make_bridge(palette));
-    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette));
+    builder.add_axial("=\"", "bridge", make_bridge(palette), 3);
+    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette), 5);
 
-    builder.add_piece('u', "hoodoo_foot", make_hoodoo_foot(palette));
+    builder.add_piece('u', "hoodoo_foot", make_hoodoo_foot(palette), 2);
     builder.add_piece('v', "hoodoo_shaft", make_hoodoo_middle(palette));
     builder.add_piece('w', "hoodoo_top", make_hoodoo_top(palette));
-    builder.add_piece('f', "arch_foot", make_arch_foot(palette));
+    builder.add_piece('f', "arch_foot", make_arch_foot(palette), 1.5);
     builder.add_piece('i', "arch_shaft", make_arch_shaft(palette));
     builder.add_turned(kArchShoulder, "arch_shoulder", make_arch_shoulder(palette));
     builder.add_axial("<^", "arch_span", make_arch_span(palette));

@@ -97,11 +97,11 @@ void shade_under(MeshBuilder& mesh) {
     mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.3F ? 0.75F : 1.0F; });
 }
 
-constexpr float kLegRadial = 1.0F;
-constexpr float kLegDepth = 1.0F;
-constexpr float kSpanRadial = 0.62F;
-constexpr float kSpanDepth = 0.85F;
-constexpr float kSpanHeight = 1.9F;
+constexpr float kLegRadial = 1.1F;
+constexpr float kLegDepth = 1.12F;
+constexpr float kSpanRadial = 0.82F;
+constexpr float kSpanDepth = 1.0F;
+constexpr float kSpanHeight = 1.75F;
 
 }  // namespace
 
@@ -426,10 +426,10 @@ MeshBuilder make_arch_foot(const CanyonPalette& palette) {
         mesh,
         palette,
         {{0, kFloor - 0.1F, 0, 1.4F, 1.4F, 601},
-         {0, 0.95F, 0, 1.2F, 1.2F, 602},
-         {0, 1.35F, 0, 1.05F, 1.05F, 603},
-         {0, 1.5F, 0, 0.95F, 0.95F, 606},
-         {0, 2.2F, 0, 1.08F, 1.05F, 604},
+         {0, 0.95F, 0, 1.25F, 1.25F, 602},
+         {0, 1.35F, 0, 1.18F, 1.18F, 603},
+         {0, 1.5F, 0, 1.02F, 1.02F, 606},
+         {0, 2.2F, 0, 1.2F, 1.2F, 604},
          {0, kTop, 0, kLegRadial, kLegDepth, 0}}
     );
     mesh.shade_upwards(0.7F, 2.2F);
@@ -444,10 +444,10 @@ MeshBuilder make_arch_shaft(const CanyonPalette& palette) {
         mesh,
         palette,
         {{0, 0, 0, kLegRadial, kLegDepth, 0},
-         {0, 0.7F, 0, 1.08F, 1.0F, 611},
-         {0, 1.3F, 0, 0.92F, 0.86F, 612},
-         {0, 1.5F, 0, 0.86F, 0.86F, 614},
-         {0, 2.2F, 0, 0.98F, 0.95F, 613},
+         {0, 0.7F, 0, 1.25F, 1.15F, 611},
+         {0, 1.3F, 0, 1.12F, 1.02F, 612},
+         {0, 1.5F, 0, 0.96F, 0.92F, 614},
+         {0, 2.2F, 0, 1.15F, 1.1F, 613},
          {0, kTop, 0, kLegRadial, kLegDepth, 0}}
     );
     return mesh;
@@ -484,9 +484,9 @@ MeshBuilder make_arch_span(const CanyonPalette& palette) {
         mesh,
         palette,
         {{-kHalf, kSpanHeight, kDown, kSpanRadial, kSpanDepth, 0},
-         {-0.8F, kSpanHeight + 0.12F, kDown, 0.55F, 0.8F, 631},
-         {0, kSpanHeight + 0.2F, kDown, 0.46F, 0.75F, 632},
-         {0.8F, kSpanHeight + 0.12F, kDown, 0.52F, 0.8F, 633},
+         {-0.8F, kSpanHeight + 0.2F, kDown, 0.66F, 0.95F, 631},
+         {0, kSpanHeight + 0.32F, kDown, 0.5F, 0.85F, 632},
+         {0.8F, kSpanHeight + 0.16F, kDown, 0.68F, 0.9F, 633},
          {kHalf, kSpanHeight, kDown, kSpanRadial, kSpanDepth, 0}}
     );
     shade_under(mesh);

@@ -30,13 +30,15 @@ Ray ray(int index) {
 // Corners are a little squarer than a circle; the ends stay where they are.
 float squared(const Ray& r) { return 1 + 0.4F * r.u * r.v; }
 
-// Rock breaks in blocks: points two by two stand out or back together. None at the cell walls.
+// Rock breaks in blocks: neighbouring points stand out or back together. None at the cell walls.
 float crack(std::uint32_t seed, int index, int segments) {
     const float depth = seed == kJointSeed ? 0.1F : 0.17F;
     if (seed == 0 || index == 0 || index == segments) {
         return 0;
     }
-    const auto block = (static_cast<std::uint32_t>(index) + seed % 2) / 2;
+    static constexpr std::array<std::array<std::uint8_t, Contour::kSegments + 1>, 3> kBlocks = {
+        {{0, 0, 1, 1, 1, 2, 2, 3, 3}, {0, 0, 0, 1, 2, 2, 2, 3, 3}, {0, 1, 1, 1, 1, 2, 3, 3, 3}}};
+    const std::uint32_t block = kBlocks[seed % 3][static_cast<std::size_t>(index)];
     return depth * (2 * scatter(seed, block) - 1);
 }
 
@@ -152,9 +154,9 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
     switch (kind) {
         case CliffKind::kValleyFoot:
             return {
-                {0.95F, kFloor, sand, 21},
+                {0.95F, kFloor, sand, 22},
                 {0.62F, 0.8F, red, 22},
-                {0.42F, 1.2F, red, 23},
+                {0.42F, 1.2F, red, 22},
                 {0.26F, 1.2F, dark, 24},
                 {0.22F, 1.8F, dark, 24},
                 {0.1F, 1.8F, cream, 25},
@@ -181,13 +183,13 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
                 {0.2F, 0.1F, cream, 41},
                 {0.26F, 0.36F, cream, 41},
                 {0.12F, kFloor, cream, 41},
-                {-0.16F, kFloor, cream, 43}};
+                {-0.16F, kFloor, cream, 41}};
         case CliffKind::kTerraceFoot:
             return {
-                {0.75F, kFloor, grass, 51},
+                {0.75F, kFloor, grass, 52},
                 {0.45F, 0.72F, red, 52},
-                {0.3F, 0.95F, red, 53},
-                {0.12F, 1.0F, orange, 53},
+                {0.3F, 0.95F, red, 52},
+                {0.12F, 1.0F, orange, 52},
                 {0.1F, 1.5F, cream, 54},
                 {0.2F, 1.5F, cream, 55},
                 {0.2F, 1.72F, red, 55},
