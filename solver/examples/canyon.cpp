@@ -45,6 +45,8 @@ void add_terrain(ExampleBuilder& builder, const CanyonPalette& palette) {
     builder.add_piece(kTurf, "turf", make_turf(palette));
     static constexpr std::array<const char*, kCliffKindCount> kKinds = {
         "foot", "cliff", "rim", "terrace"};
+    // More terraces than the example has: a mesa on a mesa is what tells a canyon from a plain.
+    static constexpr std::array<double, kCliffKindCount> kWeights = {1.2, 1, 1, 2.5};
     static constexpr std::array<const char*, kCliffShapeCount> kShapes = {
         "_edge", "_corner", "_nook"};
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
@@ -54,7 +56,8 @@ void add_terrain(ExampleBuilder& builder, const CanyonPalette& palette) {
             builder.add_turned(
                 cliff_letters(cliff_kind, cliff_shape),
                 std::string(kKinds[kind]) + kShapes[shape],
-                make_cliff(palette, cliff_kind, cliff_shape)
+                make_cliff(palette, cliff_kind, cliff_shape),
+                kWeights[kind]
             );
         }
     }
@@ -67,7 +70,7 @@ void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
     builder.add_piece('o', "boulders", make_boulders(palette), 1.5);
     builder.add_piece('t', "tufts", make_tufts(palette), 3);
     builder.add_piece('j', "juniper", make_juniper(palette), 2);
-    builder.add_turned(kHouse, "house", make_house(palette), 4);
+    builder.add_turned(kHouse, "house", make_house(palette), 6);
 
     // As built these run to the south; the names of turns count from the east.
     const auto from_east = [](MeshBuilder mesh) {
@@ -82,11 +85,11 @@ void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
 
     builder.add_turned(kStair, "stair", make_stair(palette, CliffKind::kValleyFoot), 5);
     builder.add_turned(
-        kTerraceStair, "terrace_stair", make_stair(palette, CliffKind::kTerraceFoot)
+        kTerraceStair, "terrace_stair", make_stair(palette, CliffKind::kTerraceFoot), 8
     );
     builder.add_turned(kStairHead, "stair_head", make_stair_head(palette));
     builder.add_axial("=\"", "bridge", make_bridge(palette), 3);
-    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette), 5);
+    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette), 16);
 
     builder.add_piece('u', "hoodoo_foot", make_hoodoo_foot(palette), 2);
     builder.add_piece('v', "hoodoo_shaft", make_hoodoo_middle(palette));
@@ -158,22 +161,22 @@ std::vector<std::string_view> heights() {
 
 std::vector<std::string_view> thing_map() {
     return {
-        ".................................",  "....................p......j.....",
-        ".................................",  "..............t....B==Ba....b....",
-        ".............S...j..........\\....", ".............|...................",
-        ".............|....c..............",  ".............|........5-S........",
-        "....S........1--3.o...oc.de......",  "....6o........o.|.........B......",
-        "............t.p.|........s\"....c.", "..............s.|(_)......\"......",
-        "........ta......|.........B....s.",  ".........t.4----2K...s....jj..p..",
-        "...........|..c...........S..c...",  "...........|...<..c..K.p..|.(_)p.",
+        ".................................",  "....................p.....t......",
+        ".......................a.........",  ".............t.....B==Bb.....t...",
+        ".............S..............\\....", ".............|...................",
+        ".............|....c..............",  ".............|........5-Sde......",
+        "....S........1--3.o...oc.abd.....",  "....6o........o.|.........B......",
+        "............j.p.|........s\"....c.", "..............s.|(_)......\"......",
+        "......t..t......|.........B....s.",  "...........4----2K...s...j....p..",
+        "...........|..c...........S..c...",  "........t..|...<..c..K.p..|.(_)p.",
         "...........|.o.!..s.......6...o..",  ".s.........|...>........4--------",
-        "......B..j.|p....5--3...|p.c.....",  "......\"s...|<H......|o.p|8..8....",
-        "....S7\"s...|!...pc..1---2|.p|.K..", "..b...\"....|>............S..S....",
-        "......B....|...p....H..td..t.t...",  "...........|..././..5S....\\......",
-        ".t.j....s..|..e.t................",  "...........|./j..../s..\\.....\\...",
-        "...........|o.........t..........",  "..........c|./....t/...\\.j...\\...",
-        "...........|............t...t..t.",  "...........|..././..p....\\.\\.....",
-        "...........|...........tt...j....",  "...........|.....................",
+        "......B....|p....5--3...|p.c.....",  "......\"s...|<H......|o.p|8..8....",
+        "..e.S7\"s...|!...pc..1---2|.p|.K..", ".ab...\"....|>............S..S....",
+        "..t...B....|...p....H..de..j.....",  "...........|..././..5S....\\......",
+        ".jt.....s..|..ab.................",  "...........|./d..../s.t\\t....\\...",
+        "...........|o...........ttt...t..",  "..........c|./...../...\\.t..j\\...",
+        "...........|....j................",  "...........|..././..p.j..\\.\\.....",
+        "...........|...........j.t...j...",  "...........|.....................",
     };
 }
 

@@ -39,7 +39,9 @@ float crack(std::uint32_t seed, int index, int segments) {
     static constexpr std::array<std::array<std::uint8_t, Contour::kSegments + 1>, 3> kBlocks = {
         {{0, 0, 1, 1, 1, 2, 2, 3, 3}, {0, 0, 0, 1, 2, 2, 2, 3, 3}, {0, 1, 1, 1, 1, 2, 3, 3, 3}}};
     const std::uint32_t block = kBlocks[seed % 3][static_cast<std::size_t>(index)];
-    return depth * (2 * scatter(seed, block) - 1);
+    // Near the walls the breaks are shallow, or every cell would show as a brick.
+    const bool at_wall = index == 1 || index == segments - 1;
+    return (at_wall ? 0.3F : 1.0F) * depth * (2 * scatter(seed, block) - 1);
 }
 
 Vec3 lifted(const Point2& point, float y) { return {point.u, y, point.v}; }
@@ -166,15 +168,16 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
         case CliffKind::kMiddle:
             return {
                 {0, 0, orange, kJointSeed},
-                {0, 0.6F, orange, kJointSeed},
-                {0.16F, 0.66F, red, 31},
-                {0.14F, 1.2F, red, 31},
-                {0.02F, 1.24F, cream, 32},
-                {0.02F, 1.4F, cream, 32},
-                {0.15F, 1.4F, red, 33},
-                {0.2F, 1.9F, dark, 33},
-                {0.14F, 2.2F, orange, 34},
-                {0, 2.3F, orange, kJointSeed},
+                {0, 0.34F, orange, kJointSeed},
+                {0.13F, 0.42F, red, 31},
+                {0.1F, 0.95F, red, 31},
+                {0.02F, 0.98F, cream, 32},
+                {0.02F, 1.16F, cream, 32},
+                {0.1F, 1.16F, red, 33},
+                {0.14F, 1.5F, dark, 33},
+                {0.12F, 1.72F, orange, 34},
+                {0.1F, 2.2F, red, 34},
+                {0.04F, 2.34F, orange, kJointSeed},
                 {0, kTop, orange, kJointSeed}};
         case CliffKind::kRim:
             return {
