@@ -204,6 +204,29 @@ MeshBuilder make_tufts(const CanyonPalette& palette) {
     return mesh;
 }
 
+MeshBuilder make_slabs(const CanyonPalette& palette) {
+    MeshBuilder mesh;
+    add_ground(mesh, palette.grass, 212);
+    // Bare rock that shows through the turf in two steps, and a yucca in its lee.
+    const auto slab = [&](float x, float z, float radius, float low, float high, std::uint32_t seed
+                      ) {
+        add_rock(
+            mesh,
+            x,
+            z,
+            {{radius, low, palette.orange, seed},
+             {radius * 0.95F, high - 0.04F, palette.cream, seed},
+             {radius * 0.86F, high, palette.cream, seed}},
+            9
+        );
+    };
+    slab(-0.15F, 0.1F, 1.15F, kFloor - 0.02F, kFloor + 0.13F, 281);
+    slab(-0.35F, -0.15F, 0.65F, kFloor + 0.12F, kFloor + 0.3F, 282);
+    add_tuft(mesh, {0.85F, kFloor, 0.95F}, 0.8F, palette.green, 283);
+    add_tuft(mesh, {-1.1F, kFloor, 1.1F}, 0.5F, palette.grass, 284);
+    return mesh;
+}
+
 MeshBuilder make_juniper(const CanyonPalette& palette) {
     MeshBuilder mesh;
     add_ground(mesh, palette.grass, 208);

@@ -47,6 +47,7 @@ void add_ground(MeshBuilder& mesh, MaterialId material, std::uint32_t seed);
 [[nodiscard]] MeshBuilder make_boulders(const CanyonPalette& palette);
 [[nodiscard]] MeshBuilder make_turf(const CanyonPalette& palette);
 [[nodiscard]] MeshBuilder make_tufts(const CanyonPalette& palette);
+[[nodiscard]] MeshBuilder make_slabs(const CanyonPalette& palette);
 [[nodiscard]] MeshBuilder make_juniper(const CanyonPalette& palette);
 // Door to the east.
 [[nodiscard]] MeshBuilder make_house(const CanyonPalette& palette);
