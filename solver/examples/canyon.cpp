@@ -1,11 +1,20 @@
 #include "solver/examples/built_in.h"
 #include "solver/examples/canyon_landmarks.h"
 #include "solver/examples/canyon_props.h"
+#include "solver/examples/canyon_spires.h"
 #include "solver/examples/canyon_terrain.h"
 #include "solver/examples/example_builder.h"
 
 #include <array>
 #include <utility>
+
+// A red canyon at late noon: mesas and terraces of layered sandstone about turquoise streams, with
+// natural arches, hoodoos, stairs cut into the rock, rope bridges and houses of mud brick on top.
+//
+// Rock is told by the corners of cells: a cell's corners reach one or two heights, and where they
+// reach two a line between rock and air runs through it. So cliffs come as edges, corners and
+// nooks in four turns, for the foot of a cliff, its middle, its rim and the foot of a mesa that
+// stands on another. What lies inside is "rock", which is not drawn.
 
 namespace modelsynth::examples {
 
