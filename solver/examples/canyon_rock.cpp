@@ -32,7 +32,7 @@ float squared(const Ray& r) { return 1 + 0.4F * r.u * r.v; }
 
 // Rock breaks in blocks: neighbouring points stand out or back together. None at the cell walls.
 float crack(std::uint32_t seed, int index, int segments) {
-    const float depth = seed == kJointSeed ? 0.1F : 0.17F;
+    const float depth = seed == kJointSeed ? 0.15F : 0.2F;
     if (seed == 0 || index == 0 || index == segments) {
         return 0;
     }
@@ -192,7 +192,7 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
                 {0.75F, kFloor, grass, 52},
                 {0.45F, 0.72F, red, 52},
                 {0.3F, 0.95F, red, 52},
-                {0.12F, 1.0F, orange, 52},
+                {0.12F, 1.0F, orange, 54},
                 {0.1F, 1.5F, cream, 54},
                 {0.2F, 1.5F, cream, 55},
                 {0.2F, 1.72F, red, 55},
