@@ -39,6 +39,10 @@ void ExampleBuilder::add_empty(char letter, const std::string& name) {
     add_label(letter, {name, std::nullopt, 0, 1});
 }
 
+void ExampleBuilder::add_undrawn(char letter, const std::string& name, double weight) {
+    add_label(letter, {name, std::nullopt, 0, weight});
+}
+
 void ExampleBuilder::add_piece(
     char letter, const std::string& name, MeshBuilder mesh, double weight
 ) {
@@ -71,6 +75,10 @@ void ExampleBuilder::add_axial(
 
 void ExampleBuilder::add_floor(std::initializer_list<std::string_view> rows) {
     floors_.emplace_back(rows.begin(), rows.end());
+}
+
+void ExampleBuilder::add_floor(std::vector<std::string> rows) {
+    floors_.push_back(std::move(rows));
 }
 
 void ExampleBuilder::set_boundary(const discrete::Boundary& boundary) {

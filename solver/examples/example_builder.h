@@ -27,6 +27,9 @@ class ExampleBuilder {
     // A piece without geometry.
     void add_empty(char letter, const std::string& name);
 
+    // Another piece without geometry, which does not count as empty: the inside of a hill.
+    void add_undrawn(char letter, const std::string& name, double weight = 1);
+
     // A piece with its own mesh.
     void add_piece(char letter, const std::string& name, MeshBuilder mesh, double weight = 1);
 
@@ -43,6 +46,7 @@ class ExampleBuilder {
     );
 
     void add_floor(std::initializer_list<std::string_view> rows);
+    void add_floor(std::vector<std::string> rows);
 
     void set_boundary(const discrete::Boundary& boundary);
     void set_default_size(const GridSize& size);
