@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
-#include <iostream>
+#include <cstdlib>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -37,6 +37,15 @@ struct Options {
     RunOptions run;
 };
 
+// The library's own reading of the environment does not do here: a variable would be read for the
+// commands that were not given, too, and win over the option of the one that was.
+void read_environment(const char* name, std::string& value) {
+    const char* const text = std::getenv(name);
+    if (text != nullptr && *text != '\0') {
+        value = text;
+    }
+}
+
 // Values that become part of a header must not end it.
 std::string refuse_control(const std::string& value) {
     return printable(value) == value ? "" : "has control characters";
@@ -48,12 +57,19 @@ CLI::App* add_command(
     CLI::App& app, Invocation& invocation, const char* name, const char* description
 ) {
     CLI::App* command = app.add_subcommand(name, description);
-    command->add_option("--server", invocation.server, "Where the server is")
-        ->envname("MODELSYNTH_SERVER")
+    command
+        ->add_option(
+            "--server", invocation.server, "Where the server is; default: $MODELSYNTH_SERVER"
+        )
         ->type_name("URL")
         ->capture_default_str();
-    command->add_option("--key", invocation.key, "Key for servers that ask for one")
-        ->envname("MODELSYNTH_KEY")
+    command
+        ->add_option(
+            "--key",
+            invocation.key,
+            "Key for servers that ask for one; default: $MODELSYNTH_KEY, which other users of "
+            "this machine do not see"
+        )
         ->type_name("KEY")
         ->check(refuse_control);
     command->add_flag("--json", invocation.as_json, "Write JSON, for programs");
@@ -101,7 +117,7 @@ void add_request(CLI::App& command, RequestOptions& request) {
     };
     add("--solver", request.solver, "Name of the solver")->capture_default_str();
     add("--size", request.size, "Cells along x, y (up) and z")->type_name("40x10x40");
-    add("--seed", request.seed, "Same seed, same model");
+    add("--seed", request.seed, "Same seed, same model")->check(CLI::NonNegativeNumber);
     add("--parameters", request.parameters, "The solver's parameters; --size is put with them")
         ->type_name("JSON|FILE");
     add("--priority", request.priority, "-10 ... 10, higher first");
@@ -132,7 +148,9 @@ void add_job_commands(CLI::App& app, Options& options) {
         "Show a job's progress until its end; with --json, each event as a line"
     );
     add_job(follow, options.follow.job_id);
-    follow.add_option("--after", options.follow.after, "Begin after this event")->type_name("SEQ");
+    follow.add_option("--after", options.follow.after, "Begin after this event")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("SEQ");
 
     CLI::App& fetch = *add_command(app, options.invocation, "fetch", "Download a job's model");
     add_job(fetch, options.fetch.job_id);
@@ -212,6 +230,8 @@ tl::expected<Invocation, ExitCode> read_command_line(
     int argument_count, const char* const* arguments
 ) {
     Options options;
+    read_environment("MODELSYNTH_SERVER", options.invocation.server);
+    read_environment("MODELSYNTH_KEY", options.invocation.key);
     CLI::App app("Makes large 3D models from small examples.", "modelsynth");
     app.footer(kFooter);
     app.set_version_flag("--version", MODELSYNTH_VERSION);

@@ -106,6 +106,22 @@ http::request<http::string_body> make_message(
     return message;
 }
 
+// Piece by piece, so that the time limit is one for silence and not for the whole.
+error_code write_message(
+    Connection& connection, const http::request<http::string_body>& message, seconds idle_max
+) {
+    http::request_serializer<http::string_body> serializer(message);
+    while (!serializer.is_done()) {
+        const error_code error = connection.wait(idle_max, [&](auto done) {
+            http::async_write_some(connection.stream(), serializer, done);
+        });
+        if (error) {
+            return error;
+        }
+    }
+    return {};
+}
+
 using Parser = http::response_parser<http::buffer_body>;
 
 // Reads the body to its end, piece by piece.
@@ -140,9 +156,7 @@ Outcome<HttpAnswer> HttpClient::send(const HttpRequest& request, const BodySink&
         return tl::unexpected(connection.failure("cannot reach", error));
     }
     const auto message = make_message(request, server_, key_);
-    const error_code unsent = connection.wait(request.idle_max, [&](auto done) {
-        http::async_write(connection.stream(), message, done);
-    });
+    const error_code unsent = write_message(connection, message, request.idle_max);
     // A server that refuses a large body may answer and close before it has read all of it, so
     // that the answer is looked for even then.
     Parser parser;

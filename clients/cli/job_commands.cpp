@@ -129,9 +129,11 @@ Outcome<RunReport> finish_job(
     return report;
 }
 
-void print_success(const std::string& job_id, const Progress& progress) {
-    const std::string line = "the job " + job_id + " succeeded: " + describe_blocks(progress);
-    std::fprintf(stderr, "%s\n", printable(line).c_str());
+// A line on standard error.
+void note(const std::string& line) { std::fprintf(stderr, "%s\n", printable(line).c_str()); }
+
+void note_success(const std::string& job_id, const Progress& progress) {
+    note("the job " + job_id + " succeeded: " + describe_blocks(progress));
 }
 
 }  // namespace
@@ -148,7 +150,7 @@ Outcome<void> submit(const HttpClient& client, const SubmitOptions& options, boo
         return tl::unexpected(std::move(job.error()));
     }
     if (options.output == "-") {
-        std::fprintf(stderr, "%s\n", printable(job->id).c_str());
+        note(job->id);
     } else {
         print_line(as_json ? job->job : job->id);
     }
@@ -160,7 +162,7 @@ Outcome<void> submit(const HttpClient& client, const SubmitOptions& options, boo
         if (is_fetched) {
             print_report(report, as_json);
         } else if (!as_json) {
-            print_success(report.job_id, report.progress);
+            note_success(report.job_id, report.progress);
         }
     });
 }
@@ -169,7 +171,7 @@ Outcome<void> follow(const HttpClient& client, const FollowOptions& options, boo
     ProgressDisplay display(choose_style(as_json));
     return watch(client, options, as_json, display).map([&] {
         if (!as_json) {
-            print_success(options.job_id, display.progress());
+            note_success(options.job_id, display.progress());
         }
     });
 }
@@ -182,9 +184,7 @@ Outcome<void> fetch(const HttpClient& client, const FetchOptions& options, bool 
         if (as_json) {
             print_line(fetched_json(options, bytes));
         } else if (options.output != "-") {
-            std::fprintf(
-                stderr, "%s: %s bytes\n", options.output.c_str(), std::to_string(bytes).c_str()
-            );
+            note(options.output + ": " + std::to_string(bytes) + " bytes");
         }
     });
 }
@@ -196,6 +196,9 @@ Outcome<void> run_on_server(const HttpClient& client, const RunOptions& options,
     auto job = post_job(client, options.request, "");
     if (!job) {
         return tl::unexpected(std::move(job.error()));
+    }
+    if (!as_json) {
+        note("job " + job->id);  // for going on by hand, should this be interrupted
     }
     const FetchOptions wanted{job->id, options.output, options.profile};
     return finish_job(client, *job, wanted, false, as_json).map([&](const RunReport& report) {

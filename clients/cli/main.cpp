@@ -82,7 +82,10 @@ int main(int argument_count, char** arguments) {
         return static_cast<int>(invocation.error());
     }
     catch_interrupts();
-    const auto outcome = carry_out_or_catch(*invocation);
+    auto outcome = carry_out_or_catch(*invocation);
+    if (outcome && std::ferror(stdout) != 0) {
+        outcome = tl::unexpected(Failure{ExitCode::kFailed, "cannot write standard output"});
+    }
     if (outcome) {
         return static_cast<int>(ExitCode::kDone);
     }

@@ -30,7 +30,8 @@ void print_report(const RunReport& report, bool as_json) {
         print_line(report_json(report));
         return;
     }
-    const std::string line = report.file + ": " + std::to_string(report.bytes) + " bytes, " +
+    const std::string file = report.file == "-" ? "standard output" : report.file;
+    const std::string line = file + ": " + std::to_string(report.bytes) + " bytes, " +
                              describe_blocks(report.progress) + ", seed " +
                              std::to_string(report.seed) + ", " + describe_time(report.elapsed);
     std::fprintf(stderr, "%s\n", printable(line).c_str());
