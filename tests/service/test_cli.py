@@ -18,7 +18,9 @@ ROOT = pathlib.Path(__file__).parents[2]
 BINARY = pathlib.Path(os.environ.get("MODELSYNTH_BIN_DIR", ROOT / "build/release/bin")) / "modelsynth"
 NOWHERE = "http://127.0.0.1:1"  # port 1 is not listened on
 SMALL = ["--example", "castle", "--size", "20x6x20", "--seed", "7"]
-LONG = ["--example", "castle", "--size", "600x10x600", "--seed", "7"]
+# Half a minute of solving, for tests that end it early.
+LONG = ["--example", "castle", "--size", "200x10x200", "--seed", "7"]
+LONG += ["--parameters", '{"blocks": {"passes": 100}}']
 LINE = {
     "kind": "discrete",
     "name": "line",
@@ -415,8 +417,7 @@ def test_an_interrupted_follow_leaves_the_job_running(server):
     follow.send_signal(signal.SIGINT)
     _, errors = follow.communicate(timeout=20)
     assert follow.returncode == 130 and b"goes on" in errors
-    state = json.loads(get(f"{server.url}/v1/jobs/{job}"))["state"]
-    assert state in ("running", "succeeded")
+    assert json.loads(get(f"{server.url}/v1/jobs/{job}"))["state"] == "running"
     succeed("cancel", job, server=server.url)
 
 
