@@ -15,7 +15,8 @@ import urllib.request
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
-BINARY = pathlib.Path(os.environ.get("MODELSYNTH_BIN_DIR", ROOT / "build/release/bin")) / "modelsynth"
+BIN_DIR = pathlib.Path(os.environ.get("MODELSYNTH_BIN_DIR", ROOT / "build/release/bin"))
+BINARY = BIN_DIR / "modelsynth"
 NOWHERE = "http://127.0.0.1:1"  # port 1 is not listened on
 SMALL = ["--example", "castle", "--size", "20x6x20", "--seed", "7"]
 # Half a minute of solving, for tests that end it early.
@@ -232,7 +233,8 @@ def test_json_and_a_model_do_not_share_standard_output():
 
 
 def test_an_option_wins_over_the_environment():
-    assert "http://127.0.0.1:2:" in fail(3, "list", "--server", "http://127.0.0.1:2", server=NOWHERE)
+    other = "http://127.0.0.1:2"
+    assert f"{other}:" in fail(3, "list", "--server", other, server=NOWHERE)
 
 
 @pytest.mark.parametrize(
@@ -324,7 +326,8 @@ def test_submit_follow_and_fetch(server, tmp_path):
 
 def test_follow_gives_every_event_once_as_json(server):
     job = submit(server, *SMALL)
-    events = [json.loads(line) for line in succeed("follow", job, "--json", server=server.url).splitlines()]
+    lines = succeed("follow", job, "--json", server=server.url).splitlines()
+    events = [json.loads(line) for line in lines]
     assert [event["seq"] for event in events] == list(range(1, len(events) + 1))
     assert events[0]["type"] == "queued" and events[-1]["type"] == "succeeded"
     rest = succeed("follow", job, "--json", "--after", 3, server=server.url).splitlines()
