@@ -1,0 +1,134 @@
+// Texts that the user gives are checked to be JSON but spliced as they are, never rewritten: what
+// is wrong with them, such as a field that stands there twice, is then refused with its place.
+
+#include "clients/cli/request_body.h"
+
+#include "clients/cli/input_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace modelsynth::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_example_file(const std::string& example) {
+    return example.ends_with(".json") || example.find('/') != std::string::npos;
+}
+
+std::string quote(const std::string& text) {
+    return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Outcome<std::string> example_text(const std::string& example) {
+    if (!is_example_file(example)) {
+        return quote(example);
+    }
+    return read_example_file(example);
+}
+
+// The object's text with a field put before the others.
+std::string with_field(const std::string& object, const std::string& field) {
+    const std::size_t open = object.find('{');
+    const bool is_empty = Json::parse(object).empty();
+    return object.substr(0, open + 1) + field + (is_empty ? "" : ",") + object.substr(open + 1);
+}
+
+Outcome<std::string> parameters_text(const RequestOptions& options) {
+    std::string text = options.parameters.empty() ? "{}" : options.parameters;
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string::npos || text[first] != '{') {
+        auto file = read_input(text);
+        if (!file) {
+            return file;
+        }
+        text = std::move(*file);
+    }
+    if (!Json::parse(text, nullptr, false).is_object()) {
+        return wrong_usage("the parameters are not a JSON object");
+    }
+    if (options.size.empty()) {
+        return text;
+    }
+    const auto size = parse_size(options.size);
+    if (!size) {
+        return wrong_usage("the size \"" + options.size + "\" is not like 40x10x40");
+    }
+    return with_field(text, "\"size\":" + Json(*size).dump());
+}
+
+Outcome<std::string> tags_text(const std::vector<std::string>& tags) {
+    Json object = Json::object();
+    for (const std::string& tag : tags) {
+        const std::size_t equals = tag.find('=');
+        if (equals == 0 || equals == std::string::npos) {
+            return wrong_usage("the tag \"" + tag + "\" is not like name=value");
+        }
+        object[tag.substr(0, equals)] = tag.substr(equals + 1);
+    }
+    return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Outcome<std::string> make_request_body(const RequestOptions& options) {
+    if (!options.request_file.empty()) {
+        return read_input(options.request_file);
+    }
+    const auto example = example_text(options.example);
+    if (!example) {
+        return example;
+    }
+    std::string body = "{\"solver\":" + quote(options.solver) + ",\"example\":" + *example;
+    if (options.seed) {
+        body += ",\"seed\":" + std::to_string(*options.seed);
+    }
+    if (!options.parameters.empty() || !options.size.empty()) {
+        const auto parameters = parameters_text(options);
+        if (!parameters) {
+            return parameters;
+        }
+        body += ",\"parameters\":" + *parameters;
+    }
+    if (options.priority) {
+        body += ",\"priority\":" + std::to_string(*options.priority);
+    }
+    if (options.deadline_seconds) {
+        if (!std::isfinite(*options.deadline_seconds)) {
+            return wrong_usage("the deadline is no number of seconds");
+        }
+        body += ",\"deadline\":" + Json(*options.deadline_seconds).dump();
+    }
+    if (!options.tags.empty()) {
+        const auto tags = tags_text(options.tags);
+        if (!tags) {
+            return tags;
+        }
+        body += ",\"tags\":" + *tags;
+    }
+    return body + "}";
+}
+
+std::optional<std::array<std::uint32_t, 3>> parse_size(std::string_view text) {
+    std::array<std::uint32_t, 3> size = {};
+    const char* next = text.data();
+    const char* const end = text.data() + text.size();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (axis > 0 && (next == end || *next++ != 'x')) {
+            return std::nullopt;
+        }
+        const auto [stop, error] = std::from_chars(next, end, size[axis]);
+        if (error != std::errc()) {
+            return std::nullopt;
+        }
+        next = stop;
+    }
+    return next == end ? std::optional(size) : std::nullopt;
+}
+
+}  // namespace modelsynth::cli
