@@ -166,15 +166,23 @@ class BufferWriter {
         return accessor;
     }
 
-    // RGB as RGBA, since vertex attributes are aligned to four bytes.
-    int colors(const std::vector<std::array<std::uint8_t, 3>>& values) {
-        std::vector<std::uint8_t> bytes;
-        bytes.reserve(values.size() * 4);
+    // Vertex colours times the material's colour, RGB as RGBA in 16 bits each: some readers (VTK)
+    // take vertex colours in place of the material's instead of multiplying them, and eight
+    // linear bits are too few for dark colours.
+    int colors(const std::vector<std::array<std::uint8_t, 3>>& values, const Color& base) {
+        const auto part = [](std::uint8_t value, float factor) {
+            return static_cast<std::uint16_t>(std::lround(double{factor} * value * 257.0));
+        };
+        std::vector<std::uint16_t> parts;
+        parts.reserve(values.size() * 4);
         for (const auto& color : values) {
-            bytes.insert(bytes.end(), {color[0], color[1], color[2], 255});
+            parts.insert(
+                parts.end(),
+                {part(color[0], base.r), part(color[1], base.g), part(color[2], base.b), 65535}
+            );
         }
-        const int accessor = add(bytes.data(), values.size(), 4, TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4);
+        const int accessor = add(parts.data(), values.size(), 8, TINYGLTF_TARGET_ARRAY_BUFFER);
+        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
         model_.accessors.back().normalized = true;
         return accessor;
     }
@@ -257,14 +265,15 @@ class BufferWriter {
 };
 
 tinygltf::Primitive write_primitive(
-    const Primitive& primitive, int material, BufferWriter& buffer
+    const Primitive& primitive, const Kit& kit, int material, BufferWriter& buffer
 ) {
     tinygltf::Primitive written;
     written.mode = TINYGLTF_MODE_TRIANGLES;
     written.material = material;
     written.attributes["POSITION"] = buffer.positions(primitive.positions);
     written.attributes["NORMAL"] = buffer.normals(primitive.normals);
-    written.attributes["COLOR_0"] = buffer.colors(primitive.colors);
+    written.attributes["COLOR_0"] =
+        buffer.colors(primitive.colors, kit.materials[primitive.material].base_color);
     written.indices = buffer.indices(primitive.indices, primitive.positions.size());
     return written;
 }
@@ -293,9 +302,7 @@ class MaterialWriter {
     static tinygltf::Material write(const Material& material) {
         tinygltf::Material written;
         written.name = material.name;
-        auto base = parts(material.base_color);
-        base.push_back(1.0);
-        written.pbrMetallicRoughness.baseColorFactor = base;
+        written.pbrMetallicRoughness.baseColorFactor = {1, 1, 1, 1};  // see colors()
         written.pbrMetallicRoughness.metallicFactor = parts({material.metallic, 0, 0})[0];
         written.pbrMetallicRoughness.roughnessFactor = parts({material.roughness, 0, 0})[0];
         written.emissiveFactor = parts(material.emissive);
@@ -349,7 +356,7 @@ std::vector<int> write_meshes(Document& document) {
         mesh.name = kit.meshes[i].name;
         for (const Primitive& primitive : kit.meshes[i].primitives) {
             mesh.primitives.push_back(write_primitive(
-                primitive, document.materials.number(primitive.material), document.buffer
+                primitive, kit, document.materials.number(primitive.material), document.buffer
             ));
         }
         numbers[i] = static_cast<int>(document.model.meshes.size());
@@ -478,7 +485,9 @@ bool write_merged(Document& document, std::size_t bytes_max) {
         std::map<std::uint32_t, Primitive> by_material;
         for (const Instance& instance : group.instances) {
             for (const Primitive& primitive : kit.meshes[instance.mesh].primitives) {
-                append_placed(primitive, instance, by_material[primitive.material]);
+                Primitive& merged = by_material[primitive.material];
+                merged.material = primitive.material;
+                append_placed(primitive, instance, merged);
             }
         }
         if (by_material.empty()) {
@@ -487,9 +496,9 @@ bool write_merged(Document& document, std::size_t bytes_max) {
         tinygltf::Mesh mesh;
         mesh.name = group.name;
         for (const auto& [material, primitive] : by_material) {
-            mesh.primitives.push_back(
-                write_primitive(primitive, document.materials.number(material), document.buffer)
-            );
+            mesh.primitives.push_back(write_primitive(
+                primitive, kit, document.materials.number(material), document.buffer
+            ));
         }
         document.model.meshes.push_back(std::move(mesh));
         document.roots.push_back(document.nodes.begin());
