@@ -71,6 +71,8 @@ void ExampleBuilder::add_floor(std::initializer_list<std::string_view> rows) {
     floors_.emplace_back(rows.begin(), rows.end());
 }
 
+void ExampleBuilder::add_rows(std::vector<std::string> rows) { floors_.push_back(std::move(rows)); }
+
 void ExampleBuilder::set_boundary(const discrete::Boundary& boundary) {
     example_.boundary = boundary;
 }

@@ -44,6 +44,9 @@ class ExampleBuilder {
 
     void add_floor(std::initializer_list<std::string_view> rows);
 
+    // The same for rows that were computed.
+    void add_rows(std::vector<std::string> rows);
+
     void set_boundary(const discrete::Boundary& boundary);
     void set_default_size(const GridSize& size);
 

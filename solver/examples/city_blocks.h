@@ -1,0 +1,27 @@
+#pragma once
+
+#include "solver/examples/city_materials.h"
+
+namespace modelsynth::examples {
+
+// Stone-faced blocks: shops below, offices and flats above, flat roofs with what stands on them.
+// Sides are built facing east, corners facing east and north.
+
+[[nodiscard]] MeshBuilder make_shop(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_block_door(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_shop_corner(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_core(const CityMaterials& materials);
+
+[[nodiscard]] MeshBuilder make_block_wall(const CityMaterials& materials, bool is_lit);
+[[nodiscard]] MeshBuilder make_block_corner(const CityMaterials& materials);
+// The lowest storey above a lower roof, with a door to it.
+[[nodiscard]] MeshBuilder make_terrace_wall(const CityMaterials& materials);
+// ... with a facade on the side counter-clockwise of it (left) or clockwise (right).
+[[nodiscard]] MeshBuilder make_terrace_corner(const CityMaterials& materials, bool is_left);
+
+enum class RoofPart : std::uint8_t { kNone, kTank, kMast, kLight };
+[[nodiscard]] MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part);
+[[nodiscard]] MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack);
+[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials);
+
+}  // namespace modelsynth::examples
