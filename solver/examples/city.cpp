@@ -22,22 +22,24 @@ constexpr int kFloorCount = 10;
 
 std::vector<std::string_view> plan() {
     return {
-        "..t......#......",  //
-        ".33335555#.gggg.",  //
-        ".33335555#.gFgg.",  //
-        "..l..5555#.gTSg.",  //
-        "#=##.5555=.gggg.",  //
-        "...#.5555#..n.p.",  //
-        ".bb=.2222#.7777.",  //
-        ".bb#.2222k.7777.",  //
-        ".bbz.2222z.7777.",  //
-        "##k##=##z#z##=##",  //
-        ".666.aaaaz8811..",  //
-        ".666.aaaa#8811t.",  //
-        ".666..n..=8811..",  //
-        ".666.gggg#.aaa..",  //
-        "..l..gggg#.aaa..",  //
-        "....p....#......",  //
+        ".......t#t........",  //
+        ".3355.aa#tntlt....",  //
+        ".3355.aa###k=#ggg.",  //
+        "t3355laa#7744#gSg.",  //
+        "=####=#z#7744#gTg.",  //
+        "t66#DDDD#77.t=ggg.",  //
+        ".66=DDDD#22.n#bbb.",  //
+        "n66#DDDDz22ltzbbbt",  //
+        "#kz##=#z#z##z#z=##",  //
+        "tcc#ggggz8822tDDDl",  //
+        ".cc#gTOg#8822.DDD.",  //
+        ".cc=ggTg=8822.DDD.",  //
+        "..t#ggggzt........",  //
+        "..n##=#z#l..n..t..",  //
+        "...EEEEE#aaaa..p..",  //
+        ".p.EEEEE=aaaa.....",  //
+        "...EEEEE#n..t.....",  //
+        "...t...t#t........",  //
     };
 }
 
@@ -134,6 +136,9 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     block.wall = add.turned("block_wall", make_block_wall(m, false));
     block.lit_wall = add.turned("block_wall_lit", make_block_wall(m, true));
     block.corner = add.turned("block_corner", make_block_corner(m));
+    block.brick_wall = add.turned("loft_wall", make_loft_wall(m, false));
+    block.lit_brick_wall = add.turned("loft_wall_lit", make_loft_wall(m, true));
+    block.brick_corner = add.turned("loft_corner", make_loft_corner(m));
     block.core = add.single("core", make_core(m));
     block.terrace = add.turned("terrace", make_terrace_wall(m));
     block.terrace_left = add.turned("terrace_left", make_terrace_corner(m, true));
@@ -162,30 +167,60 @@ HouseLetters add_houses(PieceAdder& add, const CityMaterials& m) {
     return house;
 }
 
-// The city ends in open places and streets that run on: no building is cut.
+// The city ends in open places, so that no building is cut. Streets run out of it only where they
+// have lamps: anything else and every second cell of the rim would begin a street.
 discrete::Boundary boundary() {
-    std::vector<std::string> open = {
+    const std::vector<std::string> open = {
         "air",
         "paving",
         "paving_lamp",
         "paving_tree",
         "paving_bench",
         "paving_puddle",
-        "street_crossing"};
-    for (const char* name : {"street", "street_lamps", "street_zebra", "street_car"}) {
-        for (const char* axis : {"_x", "_z"}) {
-            open.push_back(std::string(name) + axis);
-        }
-    }
-    for (const char* name : {"street_fork", "street_turn"}) {
-        for (const char* side : {"_e", "_n", "_w", "_s"}) {
-            open.push_back(std::string(name) + side);
-        }
-    }
+        "street_lamps_x",
+        "street_lamps_z"};
     const discrete::SideBoundary rim = {discrete::BoundaryKind::kPieces, open};
     const discrete::SideBoundary top = {discrete::BoundaryKind::kPieces, {"air"}};
     const discrete::SideBoundary bottom = {discrete::BoundaryKind::kExample, {}};
     return {rim, rim, top, bottom, rim, rim};
+}
+
+// How much more or less often than in the plan a piece is drawn. Turned pieces are named without
+// their side, or with it where sides differ: the search comes from the north-west, so what has its
+// north-western corner drawn more often begins more often without ending sooner.
+struct Tuning {
+    std::string_view name;
+    double weight;
+};
+
+constexpr Tuning kTunings[] = {
+    {"paving", 0.12},
+    {"paving_lamp", 0.3},
+    {"paving_tree", 0.3},
+    {"paving_bench", 0.3},
+    {"paving_puddle", 0.3},
+    {"street_fork", 3},
+    {"street_crossing", 4},
+    {"street_turn_s", 12},
+    {"shop_corner", 0.3},
+    {"shop_corner_n", 0.5},
+    {"house_ground_corner", 0.6},
+    {"house_corner", 0.5},
+    {"parapet_corner", 0.8},
+};
+
+void tune(discrete::Example& example) {
+    for (discrete::Piece& piece : example.pieces) {
+        for (const Tuning& tuning : kTunings) {
+            const std::string_view name = piece.name;
+            const bool is_turn_of = name.size() == tuning.name.size() + 2 &&
+                                    name.starts_with(tuning.name) &&
+                                    name[tuning.name.size()] == '_';
+            if (name == tuning.name || is_turn_of) {
+                piece.weight = tuning.weight;
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -205,7 +240,9 @@ discrete::Example make_city() {
     }
     builder.set_boundary(boundary());
     builder.set_default_size({40, kFloorCount, 40});
-    return std::move(builder).build();
+    discrete::Example example = std::move(builder).build();
+    tune(example);
+    return example;
 }
 
 }  // namespace modelsynth::examples

@@ -148,6 +148,27 @@ void add_storey_front(
     add_storey_frame(mesh, m, end);
 }
 
+// One wide window of twelve panes; the lit part is one of three, or all.
+void add_loft_front(
+    MeshBuilder& mesh, const CityMaterials& m, const std::array<bool, 3>& is_lit, RightEnd end
+) {
+    constexpr float kDepth = 0.22F;
+    const std::array<Opening, 3> windows = {
+        {{-1.5F, -0.62F, 0.7F, 2.45F, is_lit[0]},
+         {-0.44F, 0.44F, 0.7F, 2.45F, is_lit[1]},
+         {0.62F, 1.5F, 0.7F, 2.45F, is_lit[2]}}};
+    add_wall(mesh, m, m.brick, kWhole, windows, kDepth);
+    for (const Opening& window : windows) {
+        add_window_bars(mesh, m, window, kDepth, 2, 3);
+    }
+    mesh.material(m.stone).tint(0.8F);
+    add_block(mesh, -1.62F, 1.62F, 2.45F, 2.62F, 0.06F);
+    mesh.material(m.brick).tint(0.82F);
+    add_piers(mesh, 0, 2.82F, end);
+    mesh.material(m.brick).tint(0.7F);
+    add_band(mesh, 2.82F, kCityStorey, 0.16F, end);
+}
+
 void add_terrace_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     const std::array<Opening, 2> openings = {
         {{-1.4F, -0.25F, 0.2F, 2.5F, true}, {0.25F, 1.4F, 0.75F, 2.5F, false}}};
@@ -174,16 +195,13 @@ void add_parapet(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     add_band(mesh, 0, 0.22F, 0.3F, end);
     mesh.tint(1);
     const float right = kCityHalf;
-    mesh.open_box(
-        {{-kCityHalf, 0, kCityHalf - kThick}, {right, kTop, kCityHalf}},
-        end == RightEnd::kCorner ? "SNE" : "SN"
-    );
+    mesh.open_box({{-kCityHalf, 0, kCityHalf - kThick}, {right, kTop, kCityHalf}}, "SNEW");
     // A coping, and a raised middle that breaks the line against the sky.
     mesh.material(m.paving).tint(0.8F);
     mesh.open_box(
         {{-kCityHalf, kTop, kCityHalf - kThick - 0.05F},
          {right + (end == RightEnd::kCorner ? 0.06F : 0.0F), kTop + 0.1F, kCityHalf + 0.06F}},
-        end == RightEnd::kCorner ? "SNUDE" : "SNUD"
+        "SNUDEW"
     );
     mesh.material(m.stone).tint(1);
     mesh.bevelled_box(
@@ -327,6 +345,23 @@ MeshBuilder make_block_corner(const CityMaterials& materials) {
         },
         [&](MeshBuilder& mesh, RightEnd end) {
             add_storey_front(mesh, materials, true, false, end);
+        }
+    ));
+}
+
+MeshBuilder make_loft_wall(const CityMaterials& materials, bool is_lit) {
+    return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
+        add_loft_front(mesh, materials, {is_lit, is_lit, false}, end);
+    }));
+}
+
+MeshBuilder make_loft_corner(const CityMaterials& materials) {
+    return shaded_storey(make_corner(
+        [&](MeshBuilder& mesh, RightEnd end) {
+            add_loft_front(mesh, materials, {false, false, true}, end);
+        },
+        [&](MeshBuilder& mesh, RightEnd end) {
+            add_loft_front(mesh, materials, {false, false, false}, end);
         }
     ));
 }

@@ -67,9 +67,11 @@ bool is_one_of(char letter, std::string_view letters) {
 
 bool is_street(char use) { return is_one_of(use, "#=zk"); }
 
-bool is_lawn(char use) { return is_one_of(use, "gTSF"); }
+bool is_lawn(char use) { return is_one_of(use, "gTSO"); }
 
-bool is_block(char use) { return use >= '1' && use <= '8'; }
+bool is_brick(char use) { return use >= 'A' && use <= 'H'; }
+
+bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use); }
 
 bool is_house(char use) { return use >= 'a' && use <= 'c'; }
 
@@ -111,7 +113,10 @@ class Plan {
 
     [[nodiscard]] int storeys(const Place& at) const {
         const char use = this->use(at);
-        return is_block(use) ? use - '0' : is_house(use) ? use - 'a' + 1 : 0;
+        return is_brick(use)   ? use - 'A' + 1
+               : is_block(use) ? use - '0'
+               : is_house(use) ? use - 'a' + 1
+                               : 0;
     }
 
     // The sides at which what `is_same` accepts ends.
@@ -198,7 +203,7 @@ class LetterChoice {
             const char use = plan_.use(place);
             return use == 'T'   ? open.lawn_tree
                    : use == 'S' ? open.lawn_shrubs
-                   : use == 'F' ? open.fountain
+                   : use == 'O' ? open.fountain
                                 : open.lawn;
         }
         check(ends.count() == 1 || ends.is_corner(), "a lawn less than two cells wide");
@@ -268,17 +273,21 @@ class LetterChoice {
         const auto meets_roof = [&](int towards) {
             return faces.contains(towards) && plan_.storeys(place.next(towards)) == floor;
         };
-        if (faces.count() == 1) {
-            return of_side(
-                meets_roof(side)            ? block.terrace
-                : drawn(place, floor, 0.5F) ? block.lit_wall
-                                            : block.wall,
-                side
-            );
+        if (faces.count() == 1 && meets_roof(side)) {
+            return of_side(block.terrace, side);
         }
-        return meets_roof(side)       ? of_side(block.terrace_left, side)
-               : meets_roof(side + 1) ? of_side(block.terrace_right, side + 1)
-                                      : of_side(block.corner, side);
+        if (meets_roof(side) || meets_roof(side + 1)) {
+            return meets_roof(side) ? of_side(block.terrace_left, side)
+                                    : of_side(block.terrace_right, side + 1);
+        }
+        const bool brick = is_brick(plan_.use(place));
+        if (faces.count() == 2) {
+            return of_side(brick ? block.brick_corner : block.corner, side);
+        }
+        if (drawn(place, floor, 0.5F)) {
+            return of_side(brick ? block.lit_brick_wall : block.lit_wall, side);
+        }
+        return of_side(brick ? block.brick_wall : block.wall, side);
     }
 
     [[nodiscard]] char block_roof(const Place& place, int floor) const {

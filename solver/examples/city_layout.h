@@ -49,6 +49,9 @@ struct BlockLetters {
     Turned wall{};
     Turned lit_wall{};
     Turned corner{};
+    Turned brick_wall{};
+    Turned lit_brick_wall{};
+    Turned brick_corner{};
     char core = 0;
     Turned terrace{};
     Turned terrace_left{};   // ends in a facade counter-clockwise of it
@@ -85,8 +88,9 @@ struct CityLetters {
 // Turns a plan (one character a column of cells) into floors of letters. In the plan
 //   # street, = with lamps, z zebra crossing, k with a car; arms follow from the neighbours
 //   . paving, l lamp, t tree, n bench, p puddle
-//   g lawn, T with a tree, S with shrubs, F fountain; hedges follow from the neighbours
-//   1 ... 8 block of so many storeys; a b c house of 1, 2, 3 storeys and a gable roof
+//   g lawn, T with a tree, S with shrubs, O fountain; hedges follow from the neighbours
+//   1 ... 8 stone block of so many storeys, A ... H brick one; a b c house of 1, 2, 3 storeys and a
+//   gable roof
 // The plan is laid out four times, each a quarter turn on, about its south-eastern corner, so that
 // whatever it shows in one direction the example shows in all.
 // Requires: a square plan; what leaves its eastern side in a row leaves its southern side in the
