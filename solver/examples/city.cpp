@@ -22,24 +22,24 @@ constexpr int kFloorCount = 10;
 
 std::vector<std::string_view> plan() {
     return {
-        ".......t#t........",  //
-        ".3355.aa#tntlt....",  //
-        ".3355.aa###k=#ggg.",  //
-        "t3355laa#7744#gSg.",  //
-        "=####=#z#7744#gTg.",  //
+        "........#.........",  //
+        ".3355.aa#t.tl.....",  //
+        ".3355.aa###k=#....",  //
+        "t3355laa#7744#ggg.",  //
+        "=####=#z#7744#gSg.",  //
         "t66#DDDD#77.t=ggg.",  //
         ".66=DDDD#22.n#bbb.",  //
-        "n66#DDDDz22ltzbbbt",  //
+        ".66#DDDDz22ltzbbbt",  //
         "#kz##=#z#z##z#z=##",  //
-        "tcc#ggggz8822tDDDl",  //
+        ".cc#ggggz8822tDDDl",  //
         ".cc#gTOg#8822.DDD.",  //
         ".cc=ggTg=8822.DDD.",  //
         "..t#ggggzt........",  //
-        "..n##=#z#l..n..t..",  //
+        "...##=#z#...n..t..",  //
         "...EEEEE#aaaa..p..",  //
         ".p.EEEEE=aaaa.....",  //
-        "...EEEEE#n..t.....",  //
-        "...t...t#t........",  //
+        "...EEEEE#...t.....",  //
+        "...t....#.........",  //
     };
 }
 
@@ -201,7 +201,7 @@ constexpr Tuning kTunings[] = {
     {"paving_puddle", 0.3},
     {"street_fork", 3},
     {"street_crossing", 4},
-    {"street_turn_s", 12},
+    {"street_turn_s", 8},
     {"shop_corner", 0.3},
     {"shop_corner_n", 0.5},
     {"house_ground_corner", 0.6},
