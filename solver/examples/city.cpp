@@ -144,7 +144,8 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     block.terrace_left = add.turned("terrace_left", make_terrace_corner(m, true));
     block.terrace_right = add.turned("terrace_right", make_terrace_corner(m, false));
     block.parapet = add.turned("parapet", make_parapet(m, false));
-    block.parapet_corner = add.turned("parapet_corner", make_parapet_corner(m));
+    block.parapet_corner = add.turned("parapet_corner", make_parapet_corner(m, false));
+    block.parapet_tank = add.turned("parapet_corner_tank", make_parapet_corner(m, true));
     block.parapet_stack = add.turned("parapet_stack", make_parapet(m, true));
     block.roof = add.single("roof", make_flat_roof(m, RoofPart::kNone));
     block.roof_tank = add.single("roof_tank", make_flat_roof(m, RoofPart::kTank));
@@ -194,18 +195,21 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"paving", 0.12},
+    {"paving", 0.1},
     {"paving_lamp", 0.3},
     {"paving_tree", 0.3},
     {"paving_bench", 0.3},
     {"paving_puddle", 0.3},
-    {"street_fork", 3},
-    {"street_crossing", 4},
-    {"street_turn_s", 8},
+    {"street_fork", 2.5},
+    {"street_crossing", 3},
+    {"street_turn_s", 5},
     {"shop_corner", 0.3},
-    {"shop_corner_n", 0.5},
+    {"shop_corner_n", 0.9},
     {"house_ground_corner", 0.6},
     {"house_corner", 0.5},
+    {"block_corner", 0.8},
+    {"loft_corner", 1.7},
+    {"lawn_corner_n", 2},
     {"parapet_corner", 0.8},
 };
 

@@ -421,7 +421,7 @@ MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack) {
     return shaded_storey(std::move(mesh));
 }
 
-MeshBuilder make_parapet_corner(const CityMaterials& materials) {
+MeshBuilder make_parapet_corner(const CityMaterials& materials, bool has_tank) {
     const auto parapet = [&](MeshBuilder& mesh, RightEnd end) {
         add_parapet(mesh, materials, end);
     };
@@ -432,6 +432,11 @@ MeshBuilder make_parapet_corner(const CityMaterials& materials) {
     mesh.material(materials.slate).tint(1);
     mesh.hip_roof({{1.55F, 1.3F, -2.0F}, {2.0F, 1.8F, -1.55F}}, 0.06F);
     add_roof_floor(mesh, materials);
+    if (has_tank) {
+        mesh.placed({-0.35F, 0, 0.35F}, 0, 1, [&](MeshBuilder& part) {
+            add_tank(part, materials);
+        });
+    }
     return shaded_storey(std::move(mesh));
 }
 

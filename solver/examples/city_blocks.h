@@ -25,6 +25,6 @@ namespace modelsynth::examples {
 enum class RoofPart : std::uint8_t { kNone, kTank, kMast, kLight };
 [[nodiscard]] MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part);
 [[nodiscard]] MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack);
-[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials, bool has_tank);
 
 }  // namespace modelsynth::examples

@@ -301,8 +301,10 @@ class LetterChoice {
                    : drawn(place, 3, 0.5F) ? block.roof_mast
                                            : block.roof_light;
         }
+        const Turned& corner =
+            drawn(place, floor, 0.35F) ? block.parapet_tank : block.parapet_corner;
         return of_side(
-            edges.count() == 2          ? block.parapet_corner
+            edges.count() == 2          ? corner
             : drawn(place, floor, 0.4F) ? block.parapet_stack
                                         : block.parapet,
             edges.first()

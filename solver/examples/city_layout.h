@@ -58,6 +58,7 @@ struct BlockLetters {
     Turned terrace_right{};  // ... clockwise of it
     Turned parapet{};
     Turned parapet_corner{};
+    Turned parapet_tank{};
     Turned parapet_stack{};
     char roof = 0;
     char roof_tank = 0;
