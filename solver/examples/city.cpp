@@ -31,10 +31,10 @@ std::vector<std::string_view> plan() {
         ".66=DDDD#22.n#bbb.",  //
         ".66#DDDDz22ltzbbbt",  //
         "#kz##=#z#z##z#z=##",  //
-        ".cc#ggggz8822tDDDl",  //
-        ".cc#gTOg#8822.DDD.",  //
-        ".cc=ggTg=8822.DDD.",  //
-        "..t#ggggzt........",  //
+        ".cc#ggggz88..DDDDl",  //
+        ".cc#gTOg#88.nDDDD.",  //
+        ".cc=ggTg=88.tDDDD.",  //
+        "..t#ggggzt...DDDD.",  //
         "...##=#z#...n..t..",  //
         "...EEEEE#aaaa..p..",  //
         ".p.EEEEE=aaaa.....",  //
@@ -195,18 +195,25 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"paving", 0.1},
+    {"paving", 0.08},
     {"paving_lamp", 0.3},
     {"paving_tree", 0.3},
     {"paving_bench", 0.3},
     {"paving_puddle", 0.3},
-    {"street_fork", 2.5},
-    {"street_crossing", 3},
+    {"street_fork", 1.6},
+    {"street_crossing", 2.5},
     {"street_turn_s", 5},
     {"shop_corner", 0.3},
-    {"shop_corner_n", 0.9},
+    {"shop_corner_n", 1.4},
     {"house_ground_corner", 0.6},
+    {"house_ground_corner_n", 1},
     {"house_corner", 0.5},
+    {"roof", 4},
+    {"roof_tank", 0.7},
+    {"roof_light", 0.7},
+    {"roof_mast", 0.5},
+    {"parapet_stack", 0.5},
+    {"parapet_corner_tank", 0.35},
     {"block_corner", 0.8},
     {"loft_corner", 1.7},
     {"lawn_corner_n", 2},

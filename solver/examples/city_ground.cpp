@@ -169,15 +169,15 @@ void add_grass(MeshBuilder& mesh, const CityMaterials& m, float east, float nort
     mesh.open_box({{-kHalf, 0, north}, {east, kPavingTop, kHalf}}, "EWSNU");
     // Tufts.
     mesh.tint(0.75F, 0.85F, 0.6F);
-    for (std::uint32_t i = 0; i < 7; ++i) {
+    for (std::uint32_t i = 0; i < 10; ++i) {
         const float x = -1.7F + 3.0F * scatter(11, i);
         const float z = -1.2F + 2.9F * scatter(12, i);
-        const float height = kPavingTop + 0.15F + 0.15F * scatter(13, i);
+        const float height = kPavingTop + 0.1F + 0.1F * scatter(13, i);
         mesh.triangle(
-            {x - 0.15F, kPavingTop, z}, {x + 0.15F, kPavingTop, z + 0.05F}, {x, height, z}
+            {x - 0.07F, kPavingTop, z}, {x + 0.07F, kPavingTop, z + 0.05F}, {x, height, z}
         );
         mesh.triangle(
-            {x + 0.15F, kPavingTop, z + 0.05F}, {x - 0.15F, kPavingTop, z}, {x, height, z}
+            {x + 0.07F, kPavingTop, z + 0.05F}, {x - 0.07F, kPavingTop, z}, {x, height, z}
         );
     }
 }
@@ -248,15 +248,17 @@ MeshBuilder make_street(const CityMaterials& materials, const StreetArms& arms) 
             });
         }
     }
-    mesh.material(materials.asphalt).tint(0.5F);  // a drain cover
-    const std::array<Point2, 2> cover = {{{0.35F, kRoadTop + 0.012F}, {0, kRoadTop + 0.012F}}};
-    mesh.lathe(0.3F, -0.2F, cover, 8);
+    if (arms != kArmsStraight) {
+        mesh.material(materials.asphalt).tint(0.5F);  // a manhole cover
+        const std::array<Point2, 2> cover = {{{0.35F, kRoadTop + 0.015F}, {0, kRoadTop + 0.015F}}};
+        mesh.lathe(0.3F, -0.2F, cover, 8);
+    }
     return shaded(std::move(mesh));
 }
 
 MeshBuilder make_straight(const CityMaterials& materials, StreetPart part) {
     MeshBuilder mesh = make_street(materials, kArmsStraight);
-    constexpr float kPaint = kRoadTop + 0.012F;
+    constexpr float kPaint = kRoadTop + 0.015F;
     switch (part) {
         case StreetPart::kMarking:
             mesh.material(materials.stone).tint(1);

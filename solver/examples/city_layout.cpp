@@ -296,7 +296,7 @@ class LetterChoice {
             return plan_.storeys(next) >= floor;
         });
         if (edges.count() == 0) {
-            return drawn(place, 1, 0.4F)   ? block.roof
+            return drawn(place, 1, 0.55F)  ? block.roof
                    : drawn(place, 2, 0.4F) ? block.roof_tank
                    : drawn(place, 3, 0.5F) ? block.roof_mast
                                            : block.roof_light;
