@@ -195,29 +195,29 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"paving", 0.08},
+    {"paving", 0.11},
     {"paving_lamp", 0.3},
-    {"paving_tree", 0.3},
+    {"paving_tree", 0.4},
     {"paving_bench", 0.3},
     {"paving_puddle", 0.3},
+    {"street_car", 2},
     {"street_fork", 1.6},
     {"street_crossing", 2.5},
     {"street_turn_s", 5},
-    {"shop_corner", 0.3},
-    {"shop_corner_n", 1.4},
+    {"shop_corner", 0.5},
+    {"shop_corner_n", 1},
     {"house_ground_corner", 0.6},
-    {"house_ground_corner_n", 1},
+    {"house_ground_corner_n", 1.4},
     {"house_corner", 0.5},
-    {"roof", 4},
+    {"roof", 1.5},
     {"roof_tank", 0.7},
     {"roof_light", 0.7},
     {"roof_mast", 0.5},
-    {"parapet_stack", 0.5},
+    {"parapet_stack", 0.7},
     {"parapet_corner_tank", 0.35},
     {"block_corner", 0.8},
     {"loft_corner", 1.7},
-    {"lawn_corner_n", 2},
-    {"parapet_corner", 0.8},
+    {"lawn_corner_n", 3},
 };
 
 void tune(discrete::Example& example) {
