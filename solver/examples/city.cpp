@@ -7,6 +7,7 @@
 #include "solver/examples/city_ground.h"
 #include "solver/examples/city_houses.h"
 #include "solver/examples/city_layout.h"
+#include "solver/examples/city_roofs.h"
 #include "solver/examples/example_builder.h"
 
 #include <cstddef>
@@ -195,7 +196,7 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"paving", 0.11},
+    {"paving", 0.095},
     {"paving_lamp", 0.3},
     {"paving_tree", 0.4},
     {"paving_bench", 0.3},
@@ -203,9 +204,9 @@ constexpr Tuning kTunings[] = {
     {"street_car", 2},
     {"street_fork", 1.6},
     {"street_crossing", 2.5},
-    {"street_turn_s", 5},
-    {"shop_corner", 0.5},
-    {"shop_corner_n", 1},
+    {"street_turn_s", 8},
+    {"shop_corner", 0.45},
+    {"shop_corner_n", 1.2},
     {"house_ground_corner", 0.6},
     {"house_ground_corner_n", 1.4},
     {"house_corner", 0.5},
@@ -217,7 +218,7 @@ constexpr Tuning kTunings[] = {
     {"parapet_corner_tank", 0.35},
     {"block_corner", 0.8},
     {"loft_corner", 1.7},
-    {"lawn_corner_n", 3},
+    {"lawn_corner_n", 6},
 };
 
 void tune(discrete::Example& example) {

@@ -4,7 +4,7 @@
 
 namespace modelsynth::examples {
 
-// Stone-faced blocks: shops below, offices and flats above, flat roofs with what stands on them.
+// Stone-faced blocks: shops below, offices and flats above.
 // Sides are built facing east, corners facing east and north.
 
 [[nodiscard]] MeshBuilder make_shop(const CityMaterials& materials);
@@ -21,10 +21,5 @@ namespace modelsynth::examples {
 [[nodiscard]] MeshBuilder make_terrace_wall(const CityMaterials& materials);
 // ... with a facade on the side counter-clockwise of it (left) or clockwise (right).
 [[nodiscard]] MeshBuilder make_terrace_corner(const CityMaterials& materials, bool is_left);
-
-enum class RoofPart : std::uint8_t { kNone, kTank, kMast, kLight };
-[[nodiscard]] MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part);
-[[nodiscard]] MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack);
-[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials, bool has_tank);
 
 }  // namespace modelsynth::examples

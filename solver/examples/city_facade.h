@@ -3,6 +3,7 @@
 #include "solver/examples/city_materials.h"
 #include "solver/examples/kit/mesh_builder.h"
 
+#include <cstdint>
 #include <functional>
 #include <span>
 

@@ -3,6 +3,7 @@
 #include "solver/examples/city_materials.h"
 
 #include <array>
+#include <cstdint>
 
 namespace modelsynth::examples {
 
