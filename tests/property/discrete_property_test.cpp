@@ -1,0 +1,209 @@
+#include <cstdlib>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "solver/core/random.h"
+#include "solver/discrete/problem.h"
+#include "solver/discrete/synthesis.h"
+#include "tests/support/consistency_checker.h"
+#include "tests/support/examples.h"
+
+namespace modelsynth::discrete {
+namespace {
+
+using testing::find_inconsistency;
+using testing::make_random_example;
+using testing::RecordingObserver;
+
+// How many random cases; MODELSYNTH_CASES asks for more.
+std::uint64_t case_count() {
+    const char* asked = std::getenv("MODELSYNTH_CASES");
+    return asked == nullptr ? 600 : std::strtoull(asked, nullptr, 10);
+}
+
+struct Case {
+    Example example;
+    Parameters parameters;
+    std::array<bool, 3> periodic = {false, false, false};
+};
+
+Case make_case(std::uint64_t seed) {
+    Case made = {make_random_example(seed), {}, {}};
+    RandomStream random({seed, 1, 0, 99});
+    const auto below = [&random](std::uint32_t bound) {
+        return static_cast<std::int32_t>(random.below(bound));
+    };
+    Parameters& parameters = made.parameters;
+    parameters.size = GridSize{1 + below(12), 1 + below(5), 1 + below(12)};
+    if (below(4) == 0) {
+        parameters.blocks = std::optional<Blocks>();
+    } else {
+        Blocks blocks;
+        blocks.layout.size = {2 + below(7), 1 + below(5), 2 + below(7)};
+        blocks.layout.overlap = 0.1 * below(9);
+        blocks.layout.passes = static_cast<std::uint32_t>(1 + below(2));
+        parameters.blocks = blocks;
+    }
+    constexpr std::array<Order, 3> kOrders = {Order::kScan, Order::kMinEntropy, Order::kRandom};
+    parameters.order = kOrders.at(random.below(3));
+    parameters.weights = below(2) == 0 ? WeightRule::kUniform : WeightRule::kExample;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto kind = random.below(5);
+        for (const std::size_t side : {2 * axis, 2 * axis + 1}) {
+            SideBoundary boundary;
+            if (kind == 0) {
+                boundary.kind = BoundaryKind::kPeriodic;
+                made.periodic[axis] = true;
+            } else if (kind == 1) {
+                boundary.kind = BoundaryKind::kExample;
+            } else if (kind == 2) {
+                boundary = {BoundaryKind::kPieces, {"a"}};
+            }
+            parameters.boundary[side] = boundary;
+        }
+    }
+    if (below(3) == 0) {
+        const Label cell = made.example.cells[random.below(
+            static_cast<std::uint32_t>(made.example.cells.size())
+        )];
+        parameters.constraints.push_back(
+            {ConstraintKind::kFixed,
+             {made.example.pieces[cell].name},
+             std::nullopt,
+             {{below(static_cast<std::uint32_t>(parameters.size->x)),
+               below(static_cast<std::uint32_t>(parameters.size->y)),
+               below(static_cast<std::uint32_t>(parameters.size->z))}}}
+        );
+    }
+    parameters = fill_defaults(parameters, made.example);
+    return made;
+}
+
+// The boundary and the fixed cells, checked from the request alone.
+void expect_wishes_held(const Case& wanted, const Synthesis& model, std::uint64_t seed) {
+    const GridSize size = model.size;
+    const Example& example = wanted.example;
+    const auto side_of = [&size](std::size_t side, const Cell& cell) {
+        switch (static_cast<Direction>(side)) {
+            case Direction::kEast:
+                return cell.x == size.x - 1;
+            case Direction::kWest:
+                return cell.x == 0;
+            case Direction::kUp:
+                return cell.y == size.y - 1;
+            case Direction::kDown:
+                return cell.y == 0;
+            case Direction::kSouth:
+                return cell.z == size.z - 1;
+            case Direction::kNorth:
+                return cell.z == 0;
+        }
+        return false;
+    };
+    for_each_cell(Box::whole(size), [&](const Cell& cell) {
+        const Label label = model.labels[size.index(cell)];
+        for (std::size_t side = 0; side < kDirectionCount; ++side) {
+            const SideBoundary& boundary = *wanted.parameters.boundary[side];
+            if (side_of(side, cell) && boundary.kind == BoundaryKind::kPieces) {
+                ASSERT_EQ(example.pieces[label].name, "a") << "seed " << seed;
+            }
+        }
+    });
+    for (const Constraint& constraint : wanted.parameters.constraints) {
+        const Label label = model.labels[size.index(constraint.cells[0])];
+        ASSERT_EQ(example.pieces[label].name, constraint.pieces[0]) << "seed " << seed;
+    }
+}
+
+TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
+    std::size_t solved = 0;
+    std::size_t refused = 0;
+    for (std::uint64_t seed = 0; seed < case_count(); ++seed) {
+        const Case wanted = make_case(seed);
+        ASSERT_TRUE(find_faults(wanted.example, wanted.parameters).empty()) << "seed " << seed;
+        RecordingObserver observer;
+        const auto model = synthesise(wanted.example, wanted.parameters, seed, observer, {});
+        if (!model) {
+            ++refused;
+            ASSERT_TRUE(
+                model.error().code == ErrorCode::kContradiction ||
+                model.error().code == ErrorCode::kGaveUp
+            ) << "seed " << seed;
+            ASSERT_FALSE(model.error().message.empty());
+            continue;
+        }
+        ++solved;
+        ASSERT_EQ(
+            find_inconsistency(wanted.example, model->size, model->labels, wanted.periodic),
+            std::nullopt
+        ) << "seed " << seed;
+        expect_wishes_held(wanted, *model, seed);
+        if (HasFatalFailure()) {
+            return;
+        }
+    }
+    // The cases must reach both ends, or they test nothing.
+    EXPECT_GT(solved, case_count() / 4);
+    EXPECT_GT(refused, case_count() / 50);
+}
+
+TEST(DiscreteProperty, EqualRequestsGiveEqualModelsAndOtherSeedsOthers) {
+    std::size_t different = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const Case wanted = make_case(seed);
+        RecordingObserver first;
+        RecordingObserver second;
+        RecordingObserver other;
+        const auto a = synthesise(wanted.example, wanted.parameters, seed, first, {});
+        const auto b = synthesise(wanted.example, wanted.parameters, seed, second, {});
+        const auto c = synthesise(wanted.example, wanted.parameters, seed + 1000, other, {});
+        ASSERT_EQ(a.has_value(), b.has_value());
+        ASSERT_EQ(first.models, second.models) << "seed " << seed;
+        if (a && c) {
+            ASSERT_EQ(a->labels, b->labels);
+            different += a->labels != c->labels ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(different, 10U);
+}
+
+// All models of a tiny size, by brute force; the solver must find one exactly when there is one.
+TEST(DiscreteProperty, FindsATinyModelExactlyWhenThereIsOne) {
+    std::size_t possible_cases = 0;
+    for (std::uint64_t seed = 0; seed < 150; ++seed) {
+        const Example example = make_random_example(seed);
+        const GridSize size = {2, 1, 3};
+        const std::size_t labels = example.pieces.size();
+        std::size_t combinations = 1;
+        for (std::size_t i = 0; i < size.cell_count(); ++i) {
+            combinations *= labels;
+        }
+        std::set<Label> used(example.cells.begin(), example.cells.end());
+        bool possible = false;
+        for (std::size_t code = 0; code < combinations && !possible; ++code) {
+            std::vector<Label> cells;
+            std::size_t rest = code;
+            bool all_used = true;
+            for (std::size_t i = 0; i < size.cell_count(); ++i) {
+                cells.push_back(static_cast<Label>(rest % labels));
+                all_used = all_used && used.contains(cells.back());
+                rest /= labels;
+            }
+            possible = all_used && !find_inconsistency(example, size, cells);
+        }
+        Parameters parameters;
+        parameters.size = size;
+        parameters.blocks = std::optional<Blocks>();
+        RecordingObserver observer;
+        const auto model =
+            synthesise(example, fill_defaults(parameters, example), seed, observer, {});
+        possible_cases += possible ? 1U : 0U;
+        ASSERT_EQ(model.has_value(), possible) << "seed " << seed;
+    }
+    EXPECT_GT(possible_cases, 50U);
+}
+
+}  // namespace
+}  // namespace modelsynth::discrete

@@ -1,0 +1,443 @@
+#include <algorithm>
+#include <cmath>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "solver/core/block_schedule.h"
+#include "solver/core/block_search.h"
+#include "solver/core/catalog.h"
+#include "solver/core/grid_topology.h"
+#include "solver/core/label_weights.h"
+#include "solver/core/random.h"
+#include "solver/core/site_domains.h"
+
+namespace modelsynth {
+namespace {
+
+// A general graph, as other solvers have: arcs listed per site, any relations.
+class GraphTopology {
+  public:
+    static constexpr std::size_t kRelationCount = 0;
+
+    explicit GraphTopology(std::size_t site_count) : arcs_(site_count) {}
+
+    void join(Site a, Site b, RelationId from_a, RelationId from_b) {
+        arcs_[a].push_back({b, from_a});
+        arcs_[b].push_back({a, from_b});
+    }
+
+    [[nodiscard]] std::size_t site_count() const { return arcs_.size(); }
+
+    template <class Visit>
+    void for_each_arc(Site site, Visit visit) const {
+        for (const auto& [to, relation] : arcs_[site]) {
+            visit(to, relation);
+        }
+    }
+
+  private:
+    struct Arc {
+        Site to;
+        RelationId relation;
+    };
+    std::vector<std::vector<Arc>> arcs_;
+};
+
+// All of a graph as one part.
+class WholeGraph {
+  public:
+    using Inner = GraphTopology;
+
+    explicit WholeGraph(const GraphTopology& graph) : graph_(graph) {}
+
+    [[nodiscard]] const GraphTopology& inner() const { return graph_; }
+
+    [[nodiscard]] Site global(Site site) const { return site; }
+
+    template <class Visit>
+    void for_each_outward_arc(Visit /*visit*/) const {}
+
+  private:
+    const GraphTopology& graph_;
+};
+
+static_assert(Topology<GridTopology> && Topology<GraphTopology>);
+static_assert(TopologyPart<GridPart> && TopologyPart<WholeGraph>);
+
+TEST(Philox, MatchesThePublishedVectors) {
+    // kat_vectors of Random123 for philox4x32-10.
+    EXPECT_EQ(
+        philox4x32({0, 0, 0, 0}, {0, 0}),
+        (std::array<std::uint32_t, 4>{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8})
+    );
+    EXPECT_EQ(
+        philox4x32(
+            {0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}
+        ),
+        (std::array<std::uint32_t, 4>{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd})
+    );
+}
+
+TEST(RandomStream, DependsOnEveryPartOfItsKey) {
+    std::set<std::uint32_t> firsts;
+    for (const RandomKey& key :
+         {RandomKey{1, 0, 0, 0}, {2, 0, 0, 0}, {1ULL << 32, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0},
+          {1, 0, 0, 1}}) {
+        firsts.insert(RandomStream(key).next());
+    }
+    EXPECT_EQ(firsts.size(), 6U);
+    EXPECT_EQ(RandomStream({5, 6, 7, 8}).next(), RandomStream({5, 6, 7, 8}).next());
+}
+
+TEST(RandomStream, BelowIsUniformByChiSquared) {
+    RandomStream random({42, 0, 0, 0});
+    constexpr int kBins = 10;
+    constexpr int kDraws = 100'000;
+    std::array<int, kBins> counts = {};
+    for (int i = 0; i < kDraws; ++i) {
+        ++counts.at(random.below(kBins));
+    }
+    double chi_squared = 0;
+    for (const int count : counts) {
+        const double off = count - kDraws / double{kBins};
+        chi_squared += off * off / (kDraws / double{kBins});
+    }
+    EXPECT_LT(chi_squared, 27.9);  // 9 degrees of freedom, p = 0.001
+}
+
+TEST(LabelWeights, DrawByWeightAndNeverOutsideTheSet) {
+    const std::array<double, 4> given = {1, 0, 3, 100};
+    const LabelWeights weights(given);
+    LabelSet set(4);
+    set.insert(0);
+    set.insert(1);
+    set.insert(2);
+    RandomStream random({7, 0, 0, 0});
+    std::map<Label, int> counts;
+    for (int i = 0; i < 40'000; ++i) {
+        ++counts[weights.draw(set.words(), random)];
+    }
+    EXPECT_EQ(counts[1], 0);
+    EXPECT_EQ(counts[3], 0);
+    EXPECT_NEAR(counts[0], 10'000, 400);
+    EXPECT_NEAR(counts[2], 30'000, 400);
+}
+
+TEST(LabelWeights, EntropyOfEqualLabelsIsTheLogOfTheirNumber) {
+    const std::array<double, 8> given = {5, 5, 5, 5, 5, 5, 5, 5};
+    const LabelWeights weights(given);
+    EXPECT_NEAR(weights.entropy(LabelSet::all(8).words()), 3 << 16, 64);
+    LabelSet one(8);
+    one.insert(3);
+    EXPECT_NEAR(weights.entropy(one.words()), 0, 64);
+    for (const std::uint64_t value : {1ULL, 2ULL, 3ULL, 1000ULL, 1ULL << 40, ~0ULL}) {
+        EXPECT_NEAR(fixed_log2(value) / 65536.0, std::log2(static_cast<double>(value)), 1e-3);
+    }
+}
+
+TEST(GridTopology, JoinsNeighboursBothWaysWithReverseRelations) {
+    for (const Periodic periodic : {Periodic{}, Periodic{true, false, true}, {true, true, true}}) {
+        const GridTopology grid({3, 2, 4}, periodic);
+        for (Site site = 0; site < grid.site_count(); ++site) {
+            grid.for_each_arc(site, [&](Site to, RelationId relation) {
+                bool back = false;
+                grid.for_each_arc(to, [&](Site from, RelationId reverse) {
+                    back = back || (from == site && reverse == (relation ^ 1U));
+                });
+                EXPECT_TRUE(back) << site << " to " << to;
+            });
+        }
+    }
+    int arcs = 0;
+    GridTopology({3, 2, 4}).for_each_arc(0, [&arcs](Site, RelationId) { ++arcs; });
+    EXPECT_EQ(arcs, 3);
+    arcs = 0;
+    GridTopology({3, 2, 4}, {true, true, true}).for_each_arc(0, [&arcs](Site, RelationId) {
+        ++arcs;
+    });
+    EXPECT_EQ(arcs, 6);
+}
+
+TEST(GridPart, TogetherWithItsOutwardArcsHasEveryArcOfTheWhole) {
+    const GridSize size = {5, 4, 6};
+    const Periodic periodic = {true, false, false};
+    const GridTopology whole(size, periodic);
+    for (const Box& box :
+         {Box{{0, 0, 0}, {5, 4, 6}}, Box{{1, 1, 1}, {3, 3, 4}}, Box{{3, 0, 2}, {5, 2, 6}}}) {
+        const GridPart part(size, periodic, box);
+        using Arc = std::array<std::uint32_t, 3>;
+        std::multiset<Arc> found;
+        for (Site site = 0; site < part.inner().site_count(); ++site) {
+            part.inner().for_each_arc(site, [&](Site to, RelationId relation) {
+                found.insert({part.global(site), part.global(to), relation});
+            });
+        }
+        part.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
+            found.insert({part.global(inside), outside, relation});
+        });
+        std::multiset<Arc> expected;
+        for (Site site = 0; site < whole.site_count(); ++site) {
+            if (box.contains(size.cell(site))) {
+                whole.for_each_arc(site, [&](Site to, RelationId relation) {
+                    expected.insert({site, to, relation});
+                });
+            }
+        }
+        EXPECT_EQ(found, expected);
+    }
+}
+
+TEST(Schedule, CoversEveryCellAndEndsWithTheModel) {
+    const auto blocks = schedule_blocks({23, 7, 10}, {{10, 10, 4}, 0.5, 1}, 1000);
+    ASSERT_TRUE(blocks);
+    std::set<std::size_t> covered;
+    const GridSize size = {23, 7, 10};
+    for (const Box& block : *blocks) {
+        for_each_cell(block, [&](const Cell& cell) {
+            ASSERT_TRUE(size.contains(cell));
+            covered.insert(size.index(cell));
+        });
+    }
+    EXPECT_EQ(covered.size(), size.cell_count());
+    EXPECT_EQ(schedule_blocks({40, 10, 40}, {}, 1000)->size(), 49U);  // as in the contract
+    EXPECT_EQ(schedule_blocks({40, 10, 40}, {{10, 10, 10}, 0.5, 3}, 1000)->size(), 147U);
+    EXPECT_EQ(schedule_blocks({40, 10, 40}, {}, 48).error().code, ErrorCode::kTooLarge);
+}
+
+// Labels 0, 1, 2 in a ring of relations: 0 beside 1, 1 beside 2, 2 beside 0, both ways.
+Relations make_colouring(std::size_t colours) {
+    Relations relations(colours, {0});  // one symmetric relation: different labels
+    for (std::size_t a = 0; a < colours; ++a) {
+        for (std::size_t b = 0; b < colours; ++b) {
+            if (a != b) {
+                relations.allow(0, static_cast<Label>(a), static_cast<Label>(b));
+            }
+        }
+    }
+    return relations;
+}
+
+TEST(BlockSearch, ColoursAGeneralGraph) {
+    // The Petersen graph needs three colours.
+    GraphTopology graph(10);
+    for (Site i = 0; i < 5; ++i) {
+        graph.join(i, (i + 1) % 5, 0, 0);
+        graph.join(i, i + 5, 0, 0);
+        graph.join(i + 5, (i + 2) % 5 + 5, 0, 0);
+    }
+    const WholeGraph part(graph);
+    const Relations relations = make_colouring(3);
+    const SiteDomains domains(10, LabelSet::all(3));
+    const std::array<double, 3> given = {1, 1, 1};
+    const LabelWeights weights(given);
+    std::vector<Label> labels(10, kNoLabel);
+    std::vector<Site> scan(10);
+    std::iota(scan.begin(), scan.end(), Site{0});
+    for (const Order order : {Order::kScan, Order::kMinEntropy, Order::kRandom}) {
+        const BlockResult result = modify_block(
+            part, relations, domains, weights, std::span<Label>(labels), {50, order, scan},
+            {3, 0, 0, 0}, {}
+        );
+        ASSERT_EQ(result.outcome, BlockOutcome::kAccepted);
+        for (Site site = 0; site < 10; ++site) {
+            graph.for_each_arc(site, [&](Site to, RelationId) {
+                EXPECT_NE(labels[site], labels[to]);
+            });
+        }
+    }
+}
+
+TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
+    GraphTopology graph(3);
+    graph.join(0, 1, 0, 0);
+    graph.join(1, 2, 0, 0);
+    graph.join(2, 0, 0, 0);
+    const Relations relations = make_colouring(2);
+    SiteDomains domains(3, LabelSet::all(2));
+    LabelSet first(2);
+    first.insert(0);
+    domains.narrow(0, first);
+    const std::array<double, 2> given = {1, 1};
+    std::vector<Label> labels(3, 1);
+    const std::vector<Site> scan = {0, 1, 2};
+    const BlockResult result = modify_block(
+        WholeGraph(graph), relations, domains, LabelWeights(given), std::span<Label>(labels),
+        {5, Order::kScan, scan}, {}, {}
+    );
+    EXPECT_EQ(result.outcome, BlockOutcome::kImpossible);
+    EXPECT_EQ(labels, (std::vector<Label>{1, 1, 1}));  // as it was
+}
+
+TEST(BlockSearch, StopsWhenAskedAndLeavesTheModel) {
+    std::stop_source stop;
+    stop.request_stop();
+    const GridSize size = {40, 40, 40};  // enough sites that propagation looks at the token
+    const GridPart part(size, {}, Box::whole(size));
+    Relations relations(3, {1, 0, 3, 2, 5, 4});
+    for (RelationId r = 0; r < 6; r += 2) {
+        for (Label a = 0; a < 3; ++a) {
+            relations.allow(r, a, a);
+        }
+    }
+    const SiteDomains domains(size.cell_count(), LabelSet::all(3));
+    const std::array<double, 3> given = {1, 1, 1};
+    std::vector<Label> labels(size.cell_count(), 2);
+    const BlockResult result = modify_block(
+        part, relations, domains, LabelWeights(given), std::span<Label>(labels),
+        {1, Order::kRandom, {}}, {}, stop.get_token()
+    );
+    EXPECT_EQ(result.outcome, BlockOutcome::kStopped);
+    EXPECT_TRUE(std::all_of(labels.begin(), labels.end(), [](Label l) { return l == 2; }));
+}
+
+// --- the catalog against a naive twin, over random sequences of operations
+
+// Domains as sets, arc consistency by repeated full sweeps.
+class NaiveCatalog {
+  public:
+    NaiveCatalog(const GridTopology& grid, const Relations& relations)
+        : grid_(grid), relations_(relations), sets_(grid.site_count()) {
+        for (auto& set : sets_) {
+            for (std::size_t label = 0; label < relations.label_count(); ++label) {
+                set.insert(static_cast<Label>(label));
+            }
+        }
+    }
+
+    void keep_only(Site site, Label label) { sets_[site] = {label}; }
+
+    void remove(Site site, Label label) { sets_[site].erase(label); }
+
+    bool propagate() {
+        bool changed = true;
+        while (changed) {
+            changed = false;
+            for (Site site = 0; site < sets_.size(); ++site) {
+                grid_.for_each_arc(site, [&](Site to, RelationId relation) {
+                    changed = std::erase_if(sets_[to], [&](Label b) {
+                        return std::none_of(
+                            sets_[site].begin(), sets_[site].end(),
+                            [&](Label a) { return relations_.allows(relation, a, b); }
+                        );
+                    }) > 0 || changed;
+                });
+            }
+        }
+        return std::none_of(sets_.begin(), sets_.end(), [](const auto& s) { return s.empty(); });
+    }
+
+    std::vector<std::set<Label>> sets() const { return sets_; }
+
+    void restore(std::vector<std::set<Label>> sets) { sets_ = std::move(sets); }
+
+  private:
+    const GridTopology& grid_;
+    const Relations& relations_;
+    std::vector<std::set<Label>> sets_;
+};
+
+template <std::size_t kWords>
+void compare_with_naive(std::size_t label_count, std::uint64_t seed) {
+    RandomStream random({seed, 0, 0, 1});
+    const GridTopology grid({3, 2, 3}, {seed % 2 == 0, false, seed % 3 == 0});
+    Relations relations(label_count, {1, 0, 3, 2, 5, 4});
+    for (RelationId r = 0; r < 6; r += 2) {
+        for (std::size_t pairs = 0; pairs < label_count * 3; ++pairs) {
+            relations.allow(
+                r,
+                static_cast<Label>(random.below(static_cast<std::uint32_t>(label_count))),
+                static_cast<Label>(random.below(static_cast<std::uint32_t>(label_count)))
+            );
+        }
+    }
+    Catalog<GridTopology, kWords> catalog(grid, relations);
+    NaiveCatalog naive(grid, relations);
+    catalog.fill(LabelSet::all(label_count).words());
+    catalog.enqueue_all();
+    const auto same = [&] {
+        for (Site site = 0; site < grid.site_count(); ++site) {
+            std::set<Label> labels;
+            for_each_label(catalog.labels(site), [&](Label l) { labels.insert(l); });
+            if (labels != naive.sets()[site]) {
+                return false;
+            }
+        }
+        return true;
+    };
+    const bool consistent = naive.propagate();
+    ASSERT_EQ(catalog.propagate({}) == Propagation::kConsistent, consistent) << "seed " << seed;
+    if (!consistent) {
+        return;
+    }
+    struct Level {
+        typename Catalog<GridTopology, kWords>::Mark mark;
+        std::vector<std::set<Label>> sets;
+    };
+    std::vector<Level> levels;
+    for (int step = 0; step < 40; ++step) {
+        const std::uint32_t action = random.below(4);
+        if (action == 0 && !levels.empty()) {
+            catalog.undo(levels.back().mark);
+            naive.restore(levels.back().sets);
+            levels.pop_back();
+        } else {
+            const auto site =
+                static_cast<Site>(random.below(static_cast<std::uint32_t>(grid.site_count())));
+            const auto sets = naive.sets();
+            const auto pick = random.below(static_cast<std::uint32_t>(sets[site].size()));
+            const Label label = *std::next(sets[site].begin(), pick);
+            levels.push_back({catalog.mark(), sets});
+            bool left = true;
+            if (action == 1) {
+                left = catalog.remove(site, label);
+                naive.remove(site, label);
+            } else {
+                catalog.assign(site, label);
+                naive.keep_only(site, label);
+            }
+            const bool fine = naive.propagate();
+            const bool own = left && catalog.propagate({}) == Propagation::kConsistent;
+            ASSERT_EQ(own, fine) << "seed " << seed << " step " << step;
+            if (!fine) {
+                catalog.undo(levels.back().mark);
+                naive.restore(levels.back().sets);
+                levels.pop_back();
+            }
+        }
+        ASSERT_TRUE(same()) << "seed " << seed << " step " << step;
+    }
+}
+
+TEST(Catalog, AgreesWithANaiveTwinOverRandomAssignmentsRemovalsAndUndos) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        compare_with_naive<1>(3 + seed % 9, seed);
+        compare_with_naive<0>(3 + seed % 9, seed);
+        compare_with_naive<2>(70, seed);
+        compare_with_naive<0>(140, seed);
+    }
+}
+
+TEST(SiteDomains, NarrowingKeepsTheIntersectionAndSharesSets) {
+    SiteDomains domains(100, LabelSet::all(5));
+    LabelSet even(5);
+    even.insert(0);
+    even.insert(2);
+    LabelSet low(5);
+    low.insert(0);
+    low.insert(1);
+    for (Site site = 0; site < 50; ++site) {
+        domains.narrow(site, even);
+    }
+    domains.narrow(7, low);
+    EXPECT_EQ(domains.at(7).count(), 1U);
+    EXPECT_TRUE(domains.at(7).contains(0));
+    EXPECT_EQ(domains.at(8), even);
+    EXPECT_EQ(domains.at(60).count(), 5U);
+}
+
+}  // namespace
+}  // namespace modelsynth
