@@ -49,6 +49,9 @@ TILES_JOB = {"example": TILES, "size": (60, 1, 60), "parameters": {
 STEADY_JOB = {"example": YARD, "size": (100, 6, 100), "parameters": {
     "weights": "uniform", "blocks": {"passes": 12}}}
 
+# As long, but no cell is made twice in different passes: what is lost of it stays lost.
+SWEEP_JOB = {"example": YARD, "size": (240, 6, 240), "parameters": {"weights": "uniform"}}
+
 # Dozens of blocks, done at once.
 SMALL_JOB = {"example": YARD, "size": (30, 6, 30), "parameters": {"weights": "uniform"}}
 
