@@ -47,7 +47,7 @@ TILES_JOB = {"example": TILES, "size": (60, 1, 60), "parameters": {
 # A job in the middle of which there is time to do something: thousands of blocks, a second or
 # more. Half of it is a passage of a few hundred milliseconds.
 STEADY_JOB = {"example": YARD, "size": (100, 6, 100), "parameters": {
-    "weights": "uniform", "blocks": {"passes": 12}}}
+    "weights": "uniform", "blocks": {"passes": 9}}}
 
 # As long, but no cell is made twice in different passes: what is lost of it stays lost.
 SWEEP_JOB = {"example": YARD, "size": (240, 6, 240), "parameters": {"weights": "uniform"}}
