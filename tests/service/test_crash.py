@@ -213,6 +213,21 @@ def test_deleted_jobs_stay_forgotten_after_a_crash(make_server):
     assert server.get("/v1/jobs").json()["items"] == []
 
 
+def test_the_preview_of_a_begun_job_that_waits_again_after_a_crash_is_still_there(make_server):
+    server = make_server(workers=1)
+    job = submit(server, STEADY_JOB)["id"]
+    with EventReader(server.port, job) as reader:
+        reader.until_event(lambda event: event.get("fraction", 0) > 0.3)
+    assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
+    first_in_line = submit(server, ENDLESS_JOB, priority=10)["id"]
+    restart(server)
+    with EventReader(server.port, first_in_line) as reader:
+        reader.until_event(lambda event: event["type"] == "started")
+    assert server.get(f"/v1/jobs/{job}").json()["state"] == "queued"
+    assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
+    assert server.get(f"/v1/jobs/{job}").json()["state"] == "queued"
+
+
 def test_an_idempotency_key_survives_a_crash(make_server):
     server = make_server()
     body = {"solver": "discrete", "example": YARD, "parameters": {"size": [20, 6, 20]}}

@@ -344,7 +344,8 @@ def test_cancelling_a_job_that_waits_ends_its_streams(make_server):
 
 def test_deleting_a_running_job_ends_its_streams(server):
     job = submit(server, ENDLESS_JOB)
-    with EventReader(server.port, job["id"]) as first, EventReader(server.port, job["id"]) as second:
+    first, second = (EventReader(server.port, job["id"]) for _ in range(2))
+    with first, second:
         first.until_event(lambda event: event["type"] == "block")
         assert server.request("DELETE", f"/v1/jobs/{job['id']}").status == 204
         for reader in (first, second):
