@@ -486,6 +486,22 @@ def assert_gone(server, job, answer):
     assert job["id"] not in [item["id"] for item in server.get("/v1/jobs").json()["items"]]
 
 
+def test_jobs_deleted_at_any_moment_leave_no_file_behind(make_server):
+    server = make_server()
+
+    def submit_and_delete(number):
+        for turn in range(6):
+            job = post(server, job_request({"size": [20, 2, 20]}, seed=6 * number + turn)).json()
+            for _ in range((number + turn) % 8):
+                server.get(f"{job['urls']['model']}?profile={['nodes', 'merged'][turn % 2]}")
+            assert server.request("DELETE", job["urls"]["self"]).status == 204
+
+    together(8, submit_and_delete)
+    make_job(server, {"size": [3, 1, 3], "boundary": {"bottom": "red", "top": "air"}})
+    assert server.get("/v1/jobs?state=running").json()["items"] == []
+    wait_until(lambda: not files_of(server, "artifacts", "tmp"), timeout=3)
+
+
 def test_deleting_a_job_removes_only_artifacts_that_no_other_job_shares(make_server):
     server = make_server()
     first, second = make_job(server, seed=4), make_job(server, seed=4)
@@ -791,7 +807,8 @@ PERIODIC_Z = {"north": "periodic", "south": "periodic"}
     {"weights": "uniform"}, {"weights": "example"}, {"weights": {"tree": 50, "rock": 0.01}},
     {"boundary": FREE}, {"boundary": {**FREE, "top": "air"}},
     {"boundary": dict.fromkeys(SIDE_NAMES, "example")},
-    {"boundary": {"west": "air", "bottom": "free"}}, {"boundary": {"north": ["air", "grass", "path"]}},
+    {"boundary": {"west": "air", "bottom": "free"}},
+    {"boundary": {"north": ["air", "grass", "path"]}},
     {"boundary": {"east": ["air", "grass"]}}, {"boundary": {"south": "example"}},
     {"boundary": PERIODIC_X}, {"boundary": PERIODIC_Z}, {"boundary": {**PERIODIC_X, **PERIODIC_Z}},
     {"boundary": {**FREE, "top": "periodic", "bottom": "periodic"}},
@@ -915,7 +932,8 @@ def test_fixed_and_forbidden_hold_in_every_cell_they_name(server, constraints, b
     ({"boundary": {"bottom": "red", "west": "blue"}}, ["bottom", "west"]),
     ({"boundary": {"north": "red", "east": "air"}}, ["north", "east"]),
     ({"boundary": {"south": ["red", "green"], "top": ["air", "blue"]}}, ["south", "top"]),
-    ({"boundary": {"bottom": ["red", "blue"], "west": ["red", "green"], "south": ["green", "blue"]}},
+    ({"boundary": {"bottom": ["red", "blue"], "west": ["red", "green"],
+                   "south": ["green", "blue"]}},
      ["bottom", "west", "south"]),
     ({"boundary": {"west": "example", "east": "blue"}, "size": [1, 2, 4]}, ["west", "east"]),
 ])
@@ -956,6 +974,44 @@ def test_a_deadline_fails_the_job_and_keeps_its_preview(server):
     assert job["progress"]["blocks_done"] < job["progress"]["blocks_total"]
     assert server.get(job["urls"]["preview"]).body[:4] == b"glTF"
     assert_problem(server.get(job["urls"]["model"]), 409)
+
+
+def test_waiting_in_the_queue_does_not_count_to_the_deadline(make_server):
+    server = make_server(workers=1)
+    with endless_job(server) as running:
+        job = post(server, job_request(deadline=2.0)).json()
+        # Over before ten blocks are done, if waiting counted.
+        short_one = post(server, job_request(deadline=0.001, priority=-1)).json()
+        self_url = running["urls"]["self"]
+        wait_until(lambda: server.get(self_url).json()["progress"]["blocks_done"] > 9)
+        assert state_of(server, short_one) == "queued"
+    assert server.wait(job["id"])["state"] == "succeeded"
+
+
+def test_the_checker_of_models_sees_every_kind_of_fault(server):
+    """The checks of this file are worth something only if they can fail."""
+    boundary = {"bottom": "example", "top": ["air"], "north": "free", "south": "free",
+                "west": "periodic", "east": "periodic"}
+    _, labels = make_model(server, {"size": [6, 2, 4], "boundary": boundary})
+    assert_fits(labels, STRIPES, boundary)
+
+    def fails(change=None, boundary=boundary, **held):
+        cells = labels["cells"] if change is None else change(list(labels["cells"]))
+        with pytest.raises(AssertionError):
+            assert_fits({**labels, "cells": cells}, STRIPES, boundary, **held)
+
+    for place in range(len(labels["cells"])):
+        fails(lambda cells: cells[:place] + [(cells[place] + 1) % 4] + cells[place + 1:])
+    fails(lambda cells: cells[24:] + cells[:24])  # upside down
+    fails(lambda cells: cells[::-1])
+    fails(boundary={**boundary, "top": ["red"]})
+    fails(boundary={**boundary, "north": "red"})
+    fails(fixed=[([(0, 1, 0)], ["red"])])
+    fails(forbidden=[([(0, 1, 0)], ["air"])])
+    _, odd = make_model(server, {"size": [5, 2, 4]})
+    assert_fits(odd, STRIPES, {**boundary, "west": "free", "east": "free"})
+    with pytest.raises(AssertionError):
+        assert_fits(odd, STRIPES, boundary)  # does not close on itself
 
 
 def test_the_labels_are_laid_out_floor_by_floor(server):

@@ -8,6 +8,7 @@ import pytest
 
 from checks import (HILLS, STRIPES, assert_problem, endless_job, job_request, make_job, state_of,
                     together, wait_until)
+from raw_http import Wire
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +159,6 @@ def test_conditions_are_kept_as_http_says(model, case, method):
 
 
 def test_a_list_of_tags_may_be_spread_over_two_header_lines(model):
-    from test_hostile_http import Wire
     server, job, _ = model
     tag = get(model).headers["etag"].encode()
     for name, status in ((b"If-None-Match", 304), (b"If-Match", 200)):
@@ -212,7 +212,8 @@ def test_a_range_that_is_none_is_ignored(model, text):
     assert answer.status == 200 and answer.body == body
 
 
-@pytest.mark.parametrize("text", ["bytes=0-1,4-5", "bytes=0-0, -1", "bytes=" + "0-1," * 400 + "0-1"],
+@pytest.mark.parametrize("text", ["bytes=0-1,4-5", "bytes=0-0, -1",
+                                  "bytes=" + "0-1," * 400 + "0-1"],
                          ids=["two", "both ends", "very many"])
 def test_several_ranges_are_answered_whole_or_in_parts(model, text):
     _, _, body = model
