@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing: install.sh build|test
+#   build: what is needed to build and run; test: also what the tests need
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build ccache
+  libboost1.81-dev nlohmann-json3-dev libtinygltf-dev libspdlog-dev libfmt-dev
+  libcli11-dev libexpected-dev libsqlite3-dev libssl-dev
+)
+if [ "${1:-build}" = test ]; then
+  packages+=(libgtest-dev libbenchmark-dev python3 python3-pytest python3-jsonschema
+             python3-websockets clang-format)
+  command -v npm >/dev/null || packages+=(nodejs npm)
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "installing: ${missing[*]}"
+sudo=()
+[ "$(id -u)" -eq 0 ] || sudo=(sudo)
+"${sudo[@]}" apt-get update -qq
+DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test. The last line counts them.
+#
+#   bash tests/run.sh [--quick]
+#
+#   --quick  the release build alone, without the sanitizers
+set -uo pipefail
+
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root" || exit 1
+quick=false
+[ "${1:-}" = --quick ] && quick=true
+results=$root/build/test-results
+rm -rf "$results"
+mkdir -p "$results"
+broken=0
+
+step() { printf '\n=== %s (%s s)\n' "$1" "$SECONDS"; }
+
+# Counts as a failure of its own when a step cannot even be run.
+must() {
+  "$@" || { echo "failed: $*"; broken=$((broken + 1)); return 1; }
+}
+
+build() {  # PRESET TARGET...
+  local preset=$1
+  shift
+  step "build $preset"
+  must cmake --preset "$preset" >"$results/$preset.configure.log" 2>&1 || { cat "$results/$preset.configure.log"; return 1; }
+  must cmake --build --preset "$preset" --target "$@" >"$results/$preset.build.log" 2>&1 \
+    || { tail -n 60 "$results/$preset.build.log"; return 1; }
+}
+
+unit() {  # PRESET PROGRAM...
+  local preset=$1 program
+  shift
+  for program in "$@"; do
+    step "$preset $program"
+    "build/$preset/bin/$program" --gtest_brief=1 \
+      --gtest_output="xml:$results/$preset.$program.xml" || echo "$program: exit code $?"
+    [ -s "$results/$preset.$program.xml" ] || broken=$((broken + 1))
+  done
+}
+
+service() {  # PRESET PYTEST-ARGUMENTS...
+  local preset=$1
+  shift
+  step "$preset service tests"
+  MODELSYNTH_BIN_DIR=$root/build/$preset/bin /usr/bin/python3 -m pytest -q -p no:cacheprovider \
+    --junitxml="$results/$preset.service.xml" "$@"
+  [ -s "$results/$preset.service.xml" ] || broken=$((broken + 1))
+}
+
+step install
+must bash deploy/install.sh test
+export CCACHE_DIR=${CCACHE_DIR:-$HOME/.cache/modelsynth-ccache}
+
+step format
+# shellcheck disable=SC2046
+must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
+
+programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests)
+build release all && {
+  unit release "${programs[@]}"
+  service release tests/layout tests/service
+}
+if ! $quick; then
+  build asan "${programs[@]}" modelsynthd modelsynth && {
+    export MODELSYNTH_CASES=150
+    unit asan "${programs[@]}"
+    service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
+      tests/service/test_examples_api.py tests/service/test_crash.py
+  }
+  build tsan solver_tests modelsynthd && {
+    unit tsan solver_tests
+    service tsan tests/service/test_events.py tests/service/test_determinism.py \
+      tests/service/test_jobs_api.py
+  }
+fi
+
+step summary
+/usr/bin/python3 tests/summary.py "$broken" "$results"/*.xml
