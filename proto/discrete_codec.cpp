@@ -20,7 +20,8 @@ void read_size(const Value& value, const RequestLimits& limits, Parameters& para
     if (parameters.size->cell_count() > limits.model_cells_max) {
         value.fault(
             "asks for " + std::to_string(parameters.size->cell_count()) +
-            " cells; the limit model_cells_max is " + std::to_string(limits.model_cells_max)
+                " cells; the limit model_cells_max is " + std::to_string(limits.model_cells_max),
+            true
         );
     }
 }
@@ -65,7 +66,7 @@ void read_weights(const Value& value, const RequestLimits& limits, Parameters& p
     discrete::WeightList list;
     for (const auto& [name, json] : value.json().items()) {
         const Value weight(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_bytes_max) {
+        if (name.size() > limits.name_characters_max) {
             weight.fault("the name is too long");
         } else if (const auto number = weight.number(0, 1e6)) {
             list.emplace_back(name, *number);
@@ -101,7 +102,7 @@ void read_constraint(const Value& value, const RequestLimits& limits, Parameters
         }
     }
     if (const auto pieces = reader.required("pieces")) {
-        constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_bytes_max)
+        constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_characters_max)
                                 .value_or(constraint.pieces);
     }
     if (const auto box = reader.optional("box")) {
@@ -175,33 +176,17 @@ OrderedJson write_constraint(const discrete::Constraint& constraint) {
     return written;
 }
 
-// How many blocks a schedule has is known here, and refusing is cheaper than scheduling.
-void check_block_count(
-    const Value& value, const RequestLimits& limits, const Parameters& parameters
-) {
-    if (!parameters.size || !parameters.blocks || !*parameters.blocks) {
-        return;
-    }
-    if (!schedule_blocks(*parameters.size, (*parameters.blocks)->layout, limits.blocks_max)) {
-        value.faults().add(
-            value.pointer() + "/blocks",
-            "the schedule would have more blocks than the limit blocks_max, " +
-                std::to_string(limits.blocks_max)
-        );
-    }
-}
-
 }  // namespace
 
 std::optional<SideBoundary> read_side(const Value& value, const RequestLimits& limits) {
     if (value.json().is_array()) {
-        auto pieces = value.strings(1, limits.pieces_max, limits.name_bytes_max);
+        auto pieces = value.strings(1, limits.pieces_max, limits.name_characters_max);
         if (!pieces) {
             return std::nullopt;
         }
         return SideBoundary{BoundaryKind::kPieces, std::move(*pieces)};
     }
-    auto text = value.string(limits.name_bytes_max);
+    auto text = value.string(limits.name_characters_max);
     if (!text) {
         return std::nullopt;
     }
@@ -264,7 +249,6 @@ Parameters read_parameters(const Value& value, const RequestLimits& limits) {
         }
     }
     reader.finish();
-    check_block_count(value, limits, parameters);
     return parameters;
 }
 

@@ -86,7 +86,7 @@ Piece read_piece(
     Piece piece;
     ObjectReader reader(value);
     if (const auto name = reader.required("name")) {
-        piece.name = name->string(limits.name_bytes_max).value_or("");
+        piece.name = name->string(limits.name_characters_max).value_or("");
         if (name->json().is_string() && piece.name.empty()) {
             name->fault("must not be empty");
         } else if (!piece.name.empty() &&
@@ -95,7 +95,7 @@ Piece read_piece(
         }
     }
     if (const auto mesh = reader.optional("mesh")) {
-        if (const auto name = mesh->string(limits.name_bytes_max)) {
+        if (const auto name = mesh->string(limits.name_characters_max)) {
             piece.mesh = find_mesh(kit, *name);
             if (!piece.mesh) {
                 mesh->fault("the meshes have no node with this name");
@@ -145,7 +145,7 @@ void read_adjacency(
         const auto listed = reader.optional(kAxes[axis]);
         const auto pairs = listed ? listed->array(0, 1'000'000) : std::nullopt;
         for (std::size_t i = 0; pairs && i < pairs->size(); ++i) {
-            const auto names = (*pairs)[i].strings(2, 2, limits.name_bytes_max);
+            const auto names = (*pairs)[i].strings(2, 2, limits.name_characters_max);
             if (!names) {
                 continue;
             }
@@ -165,6 +165,7 @@ void read_boundary(
     const Value& value,
     const RequestLimits& limits,
     const LabelOfName& labels,
+    bool has_cells,
     discrete::Example& example
 ) {
     ObjectReader reader(value);
@@ -174,17 +175,32 @@ void read_boundary(
         if (!boundary) {
             continue;
         }
-        for (const std::string& name : boundary->pieces) {
-            if (!labels.contains(name)) {
-                given->fault("the example has no piece \"" + name + "\"");
+        for (std::size_t i = 0; i < boundary->pieces.size(); ++i) {
+            if (!labels.contains(boundary->pieces[i])) {
+                value.faults().add(
+                    given->pointer() + (given->json().is_array() ? "/" + std::to_string(i) : ""),
+                    "the example has no piece \"" + boundary->pieces[i] + "\""
+                );
             }
         }
-        if (boundary->kind == discrete::BoundaryKind::kExample && example.cells.empty()) {
+        if (boundary->kind == discrete::BoundaryKind::kExample && !has_cells) {
             given->fault("there are no cells to take the boundary from");
         }
         example.boundary[side] = *boundary;
     }
     reader.finish();
+    for (std::size_t side = 0; side < kDirectionCount; ++side) {
+        const auto is_periodic = [&example](std::size_t at) {
+            return example.boundary[at].kind == discrete::BoundaryKind::kPeriodic;
+        };
+        if (is_periodic(side) && !is_periodic(side ^ 1U)) {
+            value.faults().add(
+                value.pointer() + "/" + discrete::kSideNames[side],
+                std::string("periodic needs the opposite side, ") +
+                    discrete::kSideNames[side ^ 1U] + ", to be periodic too"
+            );
+        }
+    }
 }
 
 void set_default_boundary(discrete::Example& example) {
@@ -227,7 +243,7 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
         static_cast<void>(kind->one_of({"discrete"}));
     }
     if (const auto name = reader.required("name")) {
-        example.name = name->string(limits.name_bytes_max).value_or("");
+        example.name = name->string(limits.name_characters_max).value_or("");
     }
     if (const auto cell = reader.optional("cell")) {
         const auto values = cell->array(3, 3);
@@ -264,7 +280,7 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
         read_adjacency(*adjacency, limits, labels, example);
     }
     if (const auto empty = reader.optional("empty")) {
-        const auto name = empty->string(limits.name_bytes_max);
+        const auto name = empty->string(limits.name_characters_max);
         if (name && !labels.contains(*name)) {
             empty->fault("the example has no such piece");
         } else if (name) {
@@ -273,7 +289,7 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
     }
     set_default_boundary(example);
     if (const auto boundary = reader.optional("boundary")) {
-        read_boundary(*boundary, limits, labels, example);
+        read_boundary(*boundary, limits, labels, cells.has_value(), example);
     }
     reader.finish();
     if (!value.faults().empty()) {

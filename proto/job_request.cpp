@@ -3,6 +3,7 @@
 #include "proto/discrete_codec.h"
 #include "proto/json.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -28,7 +29,7 @@ NamedExample read_named_example(
         value.fault("must be the id of an example or an example object");
         return named;
     }
-    named.id = value.string(limits.name_bytes_max).value_or("");
+    named.id = value.string(limits.name_characters_max).value_or("");
     named.example = find_example(named.id);
     if (!named.example) {
         value.fault("there is no example \"" + named.id.substr(0, 64) + "\"");
@@ -48,7 +49,7 @@ OrderedJson read_tags(const Value& value, const RequestLimits& limits) {
     }
     for (const auto& [name, json] : value.json().items()) {
         const Value tag(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_bytes_max) {
+        if (name.size() > limits.name_characters_max) {
             tag.fault("the name is too long");
         }
         tags[name] = tag.string(1024).value_or("");
@@ -59,12 +60,34 @@ OrderedJson read_tags(const Value& value, const RequestLimits& limits) {
 // A size over model_cells_max or blocks_max passes a limit of the server rather than a rule of
 // the contract, and has a type of its own when nothing else is wrong.
 bool only_too_large(const std::vector<Fault>& faults) {
-    for (const Fault& fault : faults) {
-        if (fault.detail.find("the limit ") == std::string::npos) {
-            return false;
-        }
+    return std::all_of(faults.begin(), faults.end(), [](const Fault& fault) {
+        return fault.over_limit;
+    });
+}
+
+// What only shows once the defaults are filled in: against the example, and against the limits.
+void check_complete(
+    const Example& example, const Parameters& parameters, const RequestLimits& limits,
+    Faults& faults
+) {
+    faults.add_all("/parameters", find_faults(example, parameters));
+    const auto& discrete = std::get<discrete::Parameters>(parameters);
+    if (discrete.size->cell_count() > limits.model_cells_max) {
+        faults.add(
+            "/parameters/size",
+            "the example's default size passes the limit model_cells_max, " +
+                std::to_string(limits.model_cells_max),
+            true
+        );
+    } else if (*discrete.blocks && !schedule_blocks(*discrete.size, (*discrete.blocks)->layout,
+                                                    limits.blocks_max)) {
+        faults.add(
+            "/parameters/blocks",
+            "the schedule would have more blocks than the limit blocks_max, " +
+                std::to_string(limits.blocks_max),
+            true
+        );
     }
-    return true;
 }
 
 Problem refusal(std::vector<Fault> faults) {
@@ -113,8 +136,12 @@ Parsed<JobRequest> parse_job_request(
         );
     }
     discrete::Parameters parameters;
+    bool size_is_usable = true;
     if (const auto given = reader.optional("parameters")) {
         parameters = read_parameters(*given, limits);
+        const bool asks_size = given->json().is_object() && given->json().contains("size");
+        size_is_usable = !asks_size || (parameters.size && parameters.size->cell_count() <=
+                                                               limits.model_cells_max);
     }
     if (const auto priority = reader.optional("priority")) {
         request.priority = static_cast<std::int32_t>(priority->integer(-10, 10).value_or(0));
@@ -127,17 +154,11 @@ Parsed<JobRequest> parse_job_request(
         tags = read_tags(*given, limits);
     }
     reader.finish();
-    if (named.example && faults.empty()) {
+    // Without a usable size nothing can be said about places in the model.
+    if (named.example && size_is_usable) {
         request.task.example = *named.example;
         request.task.parameters = with_defaults(parameters, *named.example);
-        faults.add_all("/parameters", find_faults(*named.example, request.task.parameters));
-        if (model_size(request.task.parameters).cell_count() > limits.model_cells_max) {
-            faults.add(
-                "/parameters/size",
-                "the example's default size passes the limit model_cells_max, " +
-                    std::to_string(limits.model_cells_max)
-            );
-        }
+        check_complete(*named.example, request.task.parameters, limits, faults);
     }
     if (!faults.empty()) {
         return tl::unexpected(refusal(faults.take()));
@@ -161,8 +182,12 @@ Parsed<JobRequest> parse_job_request(
     return request;
 }
 
-std::string canonical_json(std::string_view body) {
-    return dump(Json::parse(body, nullptr, false));
+Parsed<std::string> canonical_json(std::string_view body, const JsonLimits& limits) {
+    auto json = parse_json(body, limits);
+    if (!json) {
+        return tl::unexpected(std::move(json.error()));
+    }
+    return dump(*json);
 }
 
 }  // namespace modelsynth::proto

@@ -37,7 +37,7 @@ using FindExample = std::function<std::optional<Example>(const std::string& id)>
 );
 
 // The text with keys sorted and white space removed, for telling equal requests apart from
-// different ones. Requires: `body` was parsed before.
-[[nodiscard]] std::string canonical_json(std::string_view body);
+// different ones. Fails: malformed-json.
+[[nodiscard]] Parsed<std::string> canonical_json(std::string_view body, const JsonLimits& limits);
 
 }  // namespace modelsynth::proto

@@ -1,5 +1,6 @@
 #include "proto/json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -128,6 +129,12 @@ std::string range_text(double min, double max) {
 }  // namespace
 
 Parsed<Json> parse_json(std::string_view text, const JsonLimits& limits) {
+    // The library takes a NUL for the end of the text.
+    if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+        return tl::unexpected(make_problem(
+            "malformed-json", "there is a NUL character (at byte " + std::to_string(nul) + ")"
+        ));
+    }
     Scanner scanner(limits);
     if (!Json::sax_parse(text, &scanner)) {
         return tl::unexpected(make_problem("malformed-json", scanner.error()));
@@ -208,14 +215,17 @@ std::optional<bool> Value::boolean() const {
     return json_.get<bool>();
 }
 
-std::optional<std::string> Value::string(std::size_t bytes_max) const {
+std::optional<std::string> Value::string(std::size_t characters_max) const {
     if (!json_.is_string()) {
         fault(std::string("must be a string, not ") + type_name(json_));
         return std::nullopt;
     }
     const auto& text = json_.get_ref<const std::string&>();
-    if (text.size() > bytes_max) {
-        fault("must have at most " + std::to_string(bytes_max) + " bytes");
+    const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // not within a character
+    });
+    if (static_cast<std::size_t>(characters) > characters_max) {
+        fault("must have at most " + std::to_string(characters_max) + " characters");
         return std::nullopt;
     }
     return text;
@@ -256,7 +266,7 @@ std::optional<std::vector<Value>> Value::array(std::size_t min, std::size_t max)
 }
 
 std::optional<std::vector<std::string>> Value::strings(
-    std::size_t min, std::size_t max, std::size_t bytes_max
+    std::size_t min, std::size_t max, std::size_t characters_max
 ) const {
     const auto values = array(min, max);
     if (!values) {
@@ -265,7 +275,7 @@ std::optional<std::vector<std::string>> Value::strings(
     std::vector<std::string> texts;
     bool fine = true;
     for (const Value& value : *values) {
-        auto text = value.string(bytes_max);
+        auto text = value.string(characters_max);
         fine = fine && text.has_value();
         texts.push_back(std::move(text).value_or(""));
     }

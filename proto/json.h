@@ -39,15 +39,15 @@ std::string dump(const Document& document) {
 // Collects what is wrong with a document, all of it and not only the first.
 class Faults {
   public:
-    void add(std::string pointer, std::string detail) {
+    void add(std::string pointer, std::string detail, bool over_limit = false) {
         if (faults_.size() < kFaultsMax) {
-            faults_.push_back({std::move(pointer), std::move(detail)});
+            faults_.push_back({std::move(pointer), std::move(detail), over_limit});
         }
     }
 
     void add_all(const std::string& prefix, const std::vector<Fault>& faults) {
         for (const Fault& fault : faults) {
-            add(prefix + fault.pointer, fault.detail);
+            add(prefix + fault.pointer, fault.detail, fault.over_limit);
         }
     }
 
@@ -73,20 +73,22 @@ class Value {
 
     [[nodiscard]] Faults& faults() const { return faults_; }
 
-    void fault(std::string detail) const { faults_.add(pointer_, std::move(detail)); }
+    void fault(std::string detail, bool over_limit = false) const {
+        faults_.add(pointer_, std::move(detail), over_limit);
+    }
 
     [[nodiscard]] std::optional<std::int64_t> integer(std::int64_t min, std::int64_t max) const;
     [[nodiscard]] std::optional<double> number(double min, double max) const;
     // Above `min`, which itself is not taken.
     [[nodiscard]] std::optional<double> number_above(double min, double max) const;
     [[nodiscard]] std::optional<bool> boolean() const;
-    [[nodiscard]] std::optional<std::string> string(std::size_t bytes_max) const;
+    [[nodiscard]] std::optional<std::string> string(std::size_t characters_max) const;
     // The position in `names` of the string.
     [[nodiscard]] std::optional<std::size_t> one_of(std::initializer_list<const char*> names) const;
     // The elements, when it is an array of at least min and at most max.
     [[nodiscard]] std::optional<std::vector<Value>> array(std::size_t min, std::size_t max) const;
     [[nodiscard]] std::optional<std::vector<std::string>> strings(
-        std::size_t min, std::size_t max, std::size_t bytes_max
+        std::size_t min, std::size_t max, std::size_t characters_max
     ) const;
     // Three integers [x, y, z].
     [[nodiscard]] std::optional<Cell> cell(std::int64_t min, std::int64_t max) const;

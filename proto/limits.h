@@ -22,7 +22,7 @@ struct RequestLimits {
     std::int32_t block_extent_max = 64;         // cells along one axis of a block
     std::size_t pieces_max = 4096;              // labels of one example
     std::size_t example_cells_max = 1'000'000;  // cells of one example
-    std::size_t name_bytes_max = 128;
+    std::size_t name_characters_max = 128;
     std::size_t tags_max = 32;
     std::size_t constraints_max = 1000;
     double deadline_seconds_max = 3600;

@@ -15,7 +15,7 @@ using namespace modelsynth::server;
 
 int serve(const Config& config) {
     const auto log = make_logger(config.log_level);
-    auto store = SqliteStore::open(config.data_directory);
+    auto store = SqliteStore::open(config.data_directory, config.retention_ms);
     if (!store) {
         std::fprintf(stderr, "modelsynthd: %s\n", store.error().message.c_str());
         return 1;

@@ -48,6 +48,29 @@ std::optional<std::uint64_t> parse_number(const std::string& text) {
     return value;
 }
 
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    });
+    return text;
+}
+
+// The items of a comma-separated list, white space and what is quoted left out.
+std::vector<std::string> list_items(const std::string& list) {
+    std::vector<std::string> items(1);
+    bool quoted = false;
+    for (const char c : list) {
+        if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && c == ',') {
+            items.emplace_back();
+        } else if (!quoted && c != ' ' && c != '\t') {
+            items.back() += c;
+        }
+    }
+    return items;
+}
+
 // A query field that nobody knows is mistyped; leaving it out would answer another question.
 std::optional<Problem> check_query(
     const Request& request, std::initializer_list<std::string_view> known
@@ -111,19 +134,14 @@ Representation glb_in_memory(std::string glb, std::string file_name) {
 // wait=N of a Prefer header (RFC 7240), capped; a malformed preference is ignored.
 std::optional<std::uint64_t> preferred_wait(const Request& request) {
     constexpr std::uint64_t kMost = 60;
-    for (const auto& [name, value] : request.headers) {
-        std::string_view rest = name == "prefer" ? std::string_view(value) : std::string_view();
-        while (!rest.empty()) {
-            const std::size_t comma = rest.find(',');
-            std::string part(rest.substr(0, comma));
-            part.erase(std::remove(part.begin(), part.end(), ' '), part.end());
-            part = part.substr(0, part.find(';'));
-            const auto seconds =
-                part.starts_with("wait=") ? parse_number(part.substr(5)) : std::nullopt;
-            if (seconds) {
-                return std::min(kMost, *seconds);
-            }
-            rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+    for (const std::string& part : list_items(request.header_list("prefer").value_or(""))) {
+        const std::string preference = lower_case(part.substr(0, part.find(';')));
+        if (!preference.starts_with("wait=")) {
+            continue;
+        }
+        const std::string digits = preference.substr(5);
+        if (!digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos) {
+            return std::min(kMost, parse_number(digits).value_or(kMost));
         }
     }
     return std::nullopt;
@@ -337,47 +355,54 @@ Response get_events(const Call& call) {
     return response;
 }
 
-bool offers_subprotocol(const Request& request) {
-    for (const auto& [name, value] : request.headers) {
-        std::string_view rest =
-            name == "sec-websocket-protocol" ? std::string_view(value) : std::string_view();
-        while (!rest.empty()) {
-            const std::size_t comma = rest.find(',');
-            std::string part(rest.substr(0, comma));
-            part.erase(std::remove(part.begin(), part.end(), ' '), part.end());
-            if (part == "modelsynth.v1") {
+// What must hold before the connection becomes a WebSocket (RFC 6455 4.2.1); nothing: it does.
+std::optional<Response> check_handshake(const Call& call) {
+    const Request& request = call.request;
+    const auto has = [&request](std::string_view name, std::string_view wanted) {
+        for (const std::string& item : list_items(request.header_list(name).value_or(""))) {
+            if (lower_case(item) == wanted) {
                 return true;
             }
-            rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
         }
+        return false;
+    };
+    const auto upgrade_required = [&call](const char* detail) {
+        Response response =
+            refuse(call, {"about:blank", "Upgrade Required", 426, detail, {}, {}});
+        response.headers.emplace_back("Upgrade", "websocket");
+        response.headers.emplace_back("Sec-WebSocket-Version", "13");
+        return response;
+    };
+    if (!has("upgrade", "websocket") || !has("connection", "upgrade")) {
+        return upgrade_required("this resource speaks WebSocket only");
     }
-    return false;
-}
-
-bool is_upgrade(const Request& request) {
-    std::string upgrade = request.header("upgrade").value_or("");
-    std::transform(upgrade.begin(), upgrade.end(), upgrade.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    });
-    return upgrade == "websocket";
+    if (request.header("sec-websocket-version") != "13") {
+        return upgrade_required("the version of WebSocket is 13");
+    }
+    const std::string key = request.header("sec-websocket-key").value_or("");
+    static constexpr const char* kBase64 =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    if (key.size() != 24 || key.find_first_not_of(kBase64) != 22 || !key.ends_with("==")) {
+        return refuse(
+            call,
+            make_problem("malformed-request", "Sec-WebSocket-Key must be 16 bytes in base64")
+        );
+    }
+    if (!has("sec-websocket-protocol", "modelsynth.v1")) {
+        return refuse(
+            call,
+            make_problem("malformed-request", "the subprotocol modelsynth.v1 must be offered")
+        );
+    }
+    return std::nullopt;
 }
 
 Response get_stream(const Call& call) {
     if (auto problem = check_query(call.request, {"after", "partial"})) {
         return refuse(call, *problem);
     }
-    if (!is_upgrade(call.request)) {
-        Response response = refuse(
-            call,
-            {"about:blank", "Upgrade Required", 426, "this resource speaks WebSocket only", {}, {}}
-        );
-        response.headers.emplace_back("Upgrade", "websocket");
-        return response;
-    }
-    if (!offers_subprotocol(call.request)) {
-        return refuse(
-            call, make_problem("malformed-request", "the subprotocol modelsynth.v1 must be offered")
-        );
+    if (auto refusal = check_handshake(call)) {
+        return *refusal;
     }
     const auto after = start_of_events(call);
     if (!after) {
@@ -589,10 +614,7 @@ bool takes_json(const Request& request) {
     }
     std::string media = type->substr(0, type->find(';'));
     media.erase(std::remove(media.begin(), media.end(), ' '), media.end());
-    std::transform(media.begin(), media.end(), media.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-    });
-    return media == "application/json";
+    return lower_case(media) == "application/json";
 }
 
 }  // namespace

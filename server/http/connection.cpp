@@ -7,7 +7,8 @@
 #include "server/stream/websocket.h"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/read_until.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
@@ -49,8 +50,9 @@ struct Exchange {
 class Connection {
   public:
     Connection(net::ip::tcp::socket socket, const ConnectionContext& context)
-        : stream_(std::move(socket)), context_(context) {
+        : stream_(std::move(socket)), timer_(stream_.get_executor()), context_(context) {
         buffer_.max_size(context.limits.head_bytes_max + kReadAhead);
+        stream_.expires_never();
     }
 
     net::awaitable<void> serve() {
@@ -60,7 +62,9 @@ class Connection {
             const Response busy = problem_response(
                 proto::make_problem("unavailable", "too many connections are open"), {}
             );
-            co_await write_whole(busy, Exchange{});
+            Exchange exchange;
+            exchange.keep_alive = false;
+            co_await write_whole(busy, exchange);
             co_return;
         }
         for (std::uint32_t count = 0; count < context_.limits.requests_per_connection_max;
@@ -122,21 +126,25 @@ class Connection {
     // when there is nobody to answer.
     net::awaitable<std::optional<Response>> read_head(Parser& parser, Exchange& exchange) {
         if (buffer_.size() == 0) {
-            stream_.expires_after(std::chrono::seconds(context_.limits.idle_seconds));
-            auto space = buffer_.prepare(4096);
-            auto [error, bytes] = co_await stream_.async_read_some(space, kToken);
-            if (error) {
+            const std::chrono::seconds idle(context_.limits.idle_seconds);
+            if (co_await read_more(Clock::now() + idle)) {
                 closed_ = true;
                 co_return std::nullopt;
             }
-            buffer_.commit(bytes);
         }
-        stream_.expires_after(std::chrono::seconds(context_.limits.head_seconds));
-        auto [error, head_bytes] =
-            co_await net::async_read_until(stream_, buffer_, "\r\n\r\n", kToken);
-        const std::string_view bytes(
-            static_cast<const char*>(buffer_.data().data()), buffer_.size()
-        );
+        const auto until = Clock::now() + std::chrono::seconds(context_.limits.head_seconds);
+        ErrorCode error;
+        std::size_t head_end = find_head_end();
+        while (head_end == std::string_view::npos && !error) {
+            if (buffer_.size() > context_.limits.head_bytes_max) {
+                error = http::error::header_limit;
+                break;
+            }
+            error = co_await read_more(until);
+            head_end = find_head_end();
+        }
+        const std::string_view bytes = buffered();
+        const std::size_t head_bytes = head_end;
         if (error == beast::error::timeout) {
             co_return refusal_of(
                 proto::plain_problem(408, "the head of the request did not come in time"), exchange
@@ -153,7 +161,7 @@ class Connection {
                 exchange
             );
         }
-        if (error == net::error::not_found ||
+        if (error == http::error::header_limit ||
             (!error && head_bytes > context_.limits.head_bytes_max)) {
             co_return too_many_fields(exchange);
         }
@@ -165,6 +173,40 @@ class Connection {
             co_return refusal_of(*problem, exchange);
         }
         co_return parse_head(parser, exchange);
+    }
+
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] std::string_view buffered() const {
+        return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};
+    }
+
+    // Where the head ends that the buffer begins with, empty lines before it left out (RFC 9112
+    // 2.2 wants them ignored); npos when its end has not come yet.
+    std::size_t find_head_end() {
+        while (buffered().starts_with("\r\n")) {
+            buffer_.consume(2);
+        }
+        const std::size_t end = buffered().find("\r\n\r\n");
+        return end == std::string_view::npos ? end : end + 4;
+    }
+
+    // Reads what comes next into the buffer; beast::error::timeout when nothing came in time.
+    // The stream's own timeout would close the socket, and the client would get no answer.
+    net::awaitable<ErrorCode> read_more(Clock::time_point until) {
+        using namespace net::experimental::awaitable_operators;
+        constexpr std::size_t kPiece = 16 * 1024;
+        auto space = buffer_.prepare(kPiece);
+        timer_.expires_at(until);
+        auto outcome = co_await (
+            stream_.socket().async_read_some(space, kToken) || timer_.async_wait(kToken)
+        );
+        if (outcome.index() == 1) {
+            co_return ErrorCode(beast::error::timeout);
+        }
+        const auto [error, count] = std::get<0>(outcome);
+        buffer_.commit(count);
+        co_return error;
     }
 
     Response too_many_fields(const Exchange& exchange) const {
@@ -180,7 +222,7 @@ class Connection {
 
     std::optional<Response> parse_head(Parser& parser, Exchange& exchange) {
         parser.header_limit(static_cast<std::uint32_t>(context_.limits.head_bytes_max + 1));
-        parser.body_limit(context_.limits.upload_body_bytes_max);
+        parser.body_limit(boost::none);  // check_head() knows what the resource takes
         ErrorCode error;
         const std::size_t used = parser.put(buffer_.data(), error);
         buffer_.consume(used);
@@ -191,11 +233,6 @@ class Connection {
             // The library says the same of a bare line feed, which is another fault.
             return refusal_of(
                 proto::plain_problem(505, "this server speaks HTTP/1.1 and HTTP/1.0"), exchange
-            );
-        }
-        if (error == http::error::body_limit) {
-            return refusal_of(
-                proto::make_problem("body-too-large", "the body is longer than is taken"), exchange
             );
         }
         if ((error && error != http::error::need_more) || !parser.is_header_done()) {
@@ -236,14 +273,13 @@ class Connection {
         const std::uint64_t limit = context_.api->body_bytes_max(exchange.request);
         parser.body_limit(limit);
         if (!parser.is_done()) {
-            if (exchange.request.header("expect")) {
+            if (exchange.version >= 11 && exchange.request.header("expect")) {
                 static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
                 auto bytes = net::buffer(kContinue);
                 co_await net::async_write(stream_, bytes, kToken);
             }
             parser.eager(true);
-            stream_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
-            auto [error, bytes] = co_await http::async_read(stream_, buffer_, parser, kToken);
+            const ErrorCode error = co_await read_into(parser);
             if (error == http::error::body_limit) {
                 co_return refusal_of(
                     proto::make_problem(
@@ -270,6 +306,19 @@ class Connection {
         }
         exchange.request.body = std::move(parser.get().body());
         co_return std::nullopt;
+    }
+
+    net::awaitable<ErrorCode> read_into(Parser& parser) {
+        using namespace net::experimental::awaitable_operators;
+        timer_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
+        auto outcome = co_await (
+            http::async_read(stream_.socket(), buffer_, parser, kToken) ||
+            timer_.async_wait(kToken)
+        );
+        if (outcome.index() == 1) {
+            co_return ErrorCode(beast::error::timeout);
+        }
+        co_return std::get<0>(std::get<0>(outcome));
     }
 
     // Waits until the job ended, the time is up or the client is gone.
@@ -482,6 +531,7 @@ class Connection {
     }
 
     beast::tcp_stream stream_;
+    net::steady_timer timer_;
     const ConnectionContext& context_;
     beast::flat_buffer buffer_;
     bool closed_ = false;       // nobody reads any more

@@ -24,6 +24,13 @@ std::optional<proto::Problem> check_raw_head(std::string_view head) {
         head.find("\r\n\t") != std::string_view::npos) {
         return make_problem("malformed-request", "header lines must not be folded");
     }
+    for (std::size_t i = 0; i < head.size(); ++i) {
+        const bool lone_feed = head[i] == '\n' && (i == 0 || head[i - 1] != '\r');
+        const bool lone_return = head[i] == '\r' && (i + 1 == head.size() || head[i + 1] != '\n');
+        if (lone_feed || lone_return) {
+            return make_problem("malformed-request", "lines end with CR LF, both of them");
+        }
+    }
     const std::string_view line = head.substr(0, head.find("\r\n"));
     if (std::any_of(line.begin(), line.end(), [](char c) {
             return static_cast<unsigned char>(c) > 0x7E;

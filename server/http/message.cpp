@@ -46,6 +46,16 @@ std::optional<std::string> Request::header(std::string_view name) const {
     return find_field(headers, name);
 }
 
+std::optional<std::string> Request::header_list(std::string_view name) const {
+    std::optional<std::string> list;
+    for (const auto& [field, value] : headers) {
+        if (field == name) {
+            list = list ? *list + ", " + value : value;
+        }
+    }
+    return list;
+}
+
 std::optional<std::string> Request::query_field(std::string_view name) const {
     return find_field(query, name);
 }
@@ -68,6 +78,10 @@ Response problem_response(const proto::Problem& problem, const Request& request)
 }
 
 bool parse_target(std::string_view target, Request& request) {
+    if (target.starts_with("http://")) {  // the absolute form names the same resource
+        const std::size_t slash = target.find('/', 7);
+        target = slash == std::string_view::npos ? std::string_view("/") : target.substr(slash);
+    }
     request.target = std::string(target);
     if (target.empty() || target.front() != '/') {
         return false;

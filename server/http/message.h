@@ -29,6 +29,8 @@ struct Request {
 
     // The first header or query field of the name.
     [[nodiscard]] std::optional<std::string> header(std::string_view name) const;
+    // All headers of the name as one list.
+    [[nodiscard]] std::optional<std::string> header_list(std::string_view name) const;
     [[nodiscard]] std::optional<std::string> query_field(std::string_view name) const;
 };
 
@@ -75,8 +77,8 @@ struct Response {
 // The problem as application/problem+json, `instance` set to the request's target.
 [[nodiscard]] Response problem_response(const proto::Problem& problem, const Request& request);
 
-// Splits a request target into path and query and decodes both. False when it is malformed: not
-// in origin form, a broken escape, a NUL byte.
+// Splits a request target into path and query and decodes both. False when it is malformed: neither
+// in origin form nor in absolute form, a broken escape, a NUL byte.
 [[nodiscard]] bool parse_target(std::string_view target, Request& request);
 
 }  // namespace modelsynth::server

@@ -111,7 +111,7 @@ Response respond_with(const Request& request, Representation representation) {
     Response response;
     response.headers = {
         {"ETag", representation.etag}, {"Cache-Control", "no-cache"}, {"Accept-Ranges", "bytes"}};
-    const auto if_match = request.header("if-match");
+    const auto if_match = request.header_list("if-match");
     if (if_match && !lists_tag(*if_match, representation.etag, false)) {
         response = problem_response(
             {"about:blank", "Precondition Failed", 412, "the entity tag is another", {}, {}},
@@ -120,7 +120,7 @@ Response respond_with(const Request& request, Representation representation) {
         response.headers.emplace_back("ETag", representation.etag);
         return response;
     }
-    const auto if_none_match = request.header("if-none-match");
+    const auto if_none_match = request.header_list("if-none-match");
     if (if_none_match && lists_tag(*if_none_match, representation.etag, true)) {
         response.status = 304;
         return response;

@@ -45,17 +45,22 @@ std::optional<ExampleLibrary::Entry> ExampleLibrary::find(const std::string& id)
         }
     }
     const auto row = store_.find_example(id);
-    const auto text = row ? artifacts_.load(row->digest) : Stored<std::string>("");
-    if (!row || !text) {
+    auto example = row ? load(row->digest) : std::nullopt;
+    if (!example) {
+        return std::nullopt;
+    }
+    Entry entry = {id, false, std::move(*example), row->digest};
+    remember(entry);
+    return entry;
+}
+
+std::optional<Example> ExampleLibrary::load(const std::string& digest) {
+    const auto text = artifacts_.load(digest);
+    if (!text) {
         return std::nullopt;
     }
     auto upload = proto::parse_example(*text, limits_);
-    if (!upload) {
-        return std::nullopt;
-    }
-    Entry entry = {id, false, upload->example};
-    remember(entry);
-    return entry;
+    return upload ? std::optional<Example>(std::move(upload->example)) : std::nullopt;
 }
 
 proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list() {
@@ -85,7 +90,7 @@ proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view tex
         return tl::unexpected(problem_of(pin.error()));
     }
     const std::string& digest = (*pin)->digest();
-    Entry entry = {"x" + digest.substr(0, 24), false, upload->example};
+    Entry entry = {"x" + digest.substr(0, 24), false, upload->example, digest};
     const auto kept = store_.add_example({entry.id, upload->example->name, digest}, uploads_max_);
     if (!kept) {
         if (kept.error().code == StoreErrorCode::kQueueFull) {

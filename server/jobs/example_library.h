@@ -23,6 +23,7 @@ class ExampleLibrary {
         std::string id;
         bool built_in = false;
         Example example;
+        std::string digest = {};  // of an uploaded one's JSON text in the artifact store
     };
 
     ExampleLibrary(
@@ -33,6 +34,9 @@ class ExampleLibrary {
     );
 
     [[nodiscard]] std::optional<Entry> find(const std::string& id);
+
+    // An uploaded example by the digest of its text, deleted or not.
+    [[nodiscard]] std::optional<Example> load(const std::string& digest);
 
     // Built-in ones first, then the uploaded ones by id.
     [[nodiscard]] proto::Parsed<std::vector<Entry>> list();

@@ -78,7 +78,6 @@ void JobService::work(const std::stop_token& stop) {
         live_,
         running_,
         config_.limits,
-        config_.retention_ms,
         log_};
     std::uint64_t seen = 0;
     while (!stop.stop_requested()) {
@@ -97,6 +96,22 @@ void JobService::work(const std::stop_token& stop) {
 }
 
 Parsed<Submitted> JobService::submit(std::string_view body, const std::string& idempotency_key) {
+    // A retry gets its first answer whatever has changed since, so the key comes first.
+    std::string request_hash;
+    if (!idempotency_key.empty()) {
+        const auto canonical = proto::canonical_json(body, config_.limits.json);
+        if (!canonical) {
+            return tl::unexpected(canonical.error());
+        }
+        request_hash = sha256_hex(*canonical);
+        auto known = jobs_.find_key(idempotency_key, request_hash);
+        if (!known) {
+            return tl::unexpected(problem_of(known.error()));
+        }
+        if (*known) {
+            return Submitted{std::move(**known), true};
+        }
+    }
     if (draining_) {
         return tl::unexpected(make_problem("draining", "the server is stopping"));
     }
@@ -121,9 +136,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     job.request = request->echo;
     job.example_id = request->example_id;
     job.idempotency_key = idempotency_key;
-    if (!idempotency_key.empty()) {
-        job.request_hash = sha256_hex(proto::canonical_json(body));
-    }
+    job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
     auto submitted = parsed(jobs_.submit(job, config_.queue_max));
     if (submitted && !submitted->replayed) {
@@ -156,6 +169,7 @@ Parsed<void> JobService::erase(const std::string& id) {
     auto erased = jobs_.erase(id);
     if (job && job->state == JobState::kRunning) {
         running_.stop(id, StopReason::kLost);
+        running_.settle(id);  // ids are never used again, so nothing will ask
     }
     live_.forget(id);
     return parsed(std::move(erased));
@@ -196,9 +210,12 @@ Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
     auto request = proto::parse_job_request(
         job.request,
         config_.limits,
-        [this](const std::string& id) -> std::optional<Example> {
-            auto entry = examples_.find(id);
-            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
+        [this, &job](const std::string& id) -> std::optional<Example> {
+            if (auto entry = examples_.find(id)) {
+                return std::move(entry->example);
+            }
+            const auto kept = jobs_.artifact(job.id, kExampleArtifact);
+            return kept ? examples_.load(*kept) : std::nullopt;
         },
         job.seed
     );
@@ -254,11 +271,10 @@ std::optional<JobService::WholeState> JobService::whole_state(const std::string&
         return std::nullopt;
     }
     auto loaded = load_model(*job);
-    const auto page = events_.read(id, 0, 1);
-    if (!loaded || !page) {
+    if (!loaded) {
         return std::nullopt;
     }
-    return WholeState{loaded->example, {page->head - 1, std::move(loaded->model), true}};
+    return WholeState{loaded->example, {job->head - 1, std::move(loaded->model), true}};
 }
 
 Parsed<std::string> JobService::preview(const std::string& id) {

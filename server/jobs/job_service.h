@@ -30,7 +30,6 @@ struct JobServiceConfig {
     std::size_t workers = 2;
     std::size_t queue_max = 1000;
     std::size_t examples_max = 1000;
-    proto::UnixMillis retention_ms = proto::UnixMillis{7} * 24 * 3600 * 1000;
     proto::RequestLimits limits;
 };
 

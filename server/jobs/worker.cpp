@@ -200,6 +200,7 @@ class ClaimRun {
             context_.limits,
             [this](const std::string& id) -> std::optional<Example> {
                 auto entry = context_.examples.find(id);
+                example_digest_ = entry ? entry->digest : "";
                 return entry ? std::optional(std::move(entry->example)) : std::nullopt;
             },
             claim_.job.seed
@@ -268,6 +269,7 @@ class ClaimRun {
             finished.model.size});
         outcome.artifacts = {
             {"nodes.glb", (*model_pin)->digest()}, {"labels", (*labels_pin)->digest()}};
+        link_example(outcome);
         finish(std::move(outcome));
     }
 
@@ -302,6 +304,14 @@ class ClaimRun {
         }
     }
 
+    // An uploaded example may be deleted while the job's model is kept; what the model's other
+    // profiles are made from stays with the job.
+    void link_example(Outcome& outcome) const {
+        if (!example_digest_.empty()) {
+            outcome.artifacts.push_back({kExampleArtifact, example_digest_});
+        }
+    }
+
     // Ends the job with what there is of its model as its preview.
     void end_unfinished(
         proto::JobState state, const std::optional<proto::Problem>& problem, const LiveJob& live
@@ -317,6 +327,7 @@ class ClaimRun {
             pin = context_.artifacts.put(proto::encode_labels(preview.model.labels));
             if (*pin) {
                 outcome.artifacts = {{"labels", (**pin)->digest()}};
+                link_example(outcome);
             }
         }
         finish(std::move(outcome));
@@ -331,7 +342,6 @@ class ClaimRun {
 
     void finish(Outcome outcome) {
         outcome.finished = now_millis();
-        outcome.expires = outcome.finished + context_.retention_ms;
         const auto job = context_.jobs.finish(claim_.lease, outcome);
         if (job) {
             context_.log->info("job ended job={} state={}", job->id, proto::state_name(job->state));
@@ -346,6 +356,7 @@ class ClaimRun {
     const WorkerContext& context_;
     const Claim& claim_;
     RunningJobs::Entry running_;
+    std::string example_digest_;  // of an uploaded example's text
 };
 
 }  // namespace

@@ -23,6 +23,9 @@ inline constexpr const char* kSolverVersion = "discrete-1";
 // the server down with it, or time and again there is none to make it.
 inline constexpr std::uint32_t kFruitlessClaimsMax = 8;
 
+// The name under which a job keeps the text of an uploaded example.
+inline constexpr const char* kExampleArtifact = "example";
+
 // What a worker needs; everything outlives it and is thread-safe.
 struct WorkerContext {
     JobStore& jobs;
@@ -32,7 +35,6 @@ struct WorkerContext {
     LiveJobs& live;
     RunningJobs& running;
     const proto::RequestLimits& limits;
-    proto::UnixMillis retention_ms;
     std::shared_ptr<spdlog::logger> log;
 };
 

@@ -104,7 +104,7 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
         const int code = app.exit(error);
         return tl::unexpected(code == 0 ? 0 : 2);
     }
-    config.jobs.retention_ms = static_cast<proto::UnixMillis>(retention_hours * 3600 * 1000);
+    config.retention_ms = static_cast<proto::UnixMillis>(retention_hours * 3600 * 1000);
     return config;
 }
 

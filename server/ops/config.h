@@ -13,6 +13,7 @@ namespace modelsynth::server {
 struct Config {
     std::string data_directory = "modelsynth-data";
     std::string log_level = "info";
+    proto::UnixMillis retention_ms = proto::UnixMillis{7} * 24 * 3600 * 1000;
     JobServiceConfig jobs;
     HttpConfig http;
 };

@@ -20,6 +20,11 @@ class JobStore {
     // when queue_max jobs are queued.
     [[nodiscard]] virtual Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) = 0;
 
+    // The job that was submitted with the key, or nothing. Fails: kConflict as submit().
+    [[nodiscard]] virtual Stored<std::optional<proto::Job>> find_key(
+        const std::string& idempotency_key, const std::string& request_hash
+    ) = 0;
+
     [[nodiscard]] virtual Stored<proto::Job> find(const std::string& id) = 0;
     [[nodiscard]] virtual Stored<JobPage> list(const JobQuery& query) = 0;
     [[nodiscard]] virtual Stored<std::size_t> queued_count() = 0;

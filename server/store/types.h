@@ -104,7 +104,6 @@ struct Outcome {
     std::string error;   // JSON, for kFailed
     std::vector<ArtifactLink> artifacts;
     proto::UnixMillis finished = 0;
-    std::optional<proto::UnixMillis> expires;
 };
 
 struct EventPage {

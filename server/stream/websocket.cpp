@@ -2,6 +2,7 @@
 
 #include "proto/frame.h"
 #include "proto/job.h"
+#include "server/jobs/ids.h"
 #include "server/stream/event_cursor.h"
 #include "server/stream/on_pool.h"
 #include "solver/mesh/glb_writer.h"
@@ -48,7 +49,8 @@ struct Session {
               socket.get_executor(),
               wanted.job_id,
               wanted.after
-          ) {}
+          ),
+          needs_whole(wanted.partial != Partial::kNone) {}
 
     Socket socket;
     SocketUpgrade upgrade;
@@ -57,9 +59,9 @@ struct Session {
     bool peer_gone = false;
     websocket::close_reason closing;  // why we close; none: the peer closed
     bool slow = false;
-    // A block's frame could not be had: the next frame is a whole state.
+    // The client has no state that the next block's frame could be laid upon: at the beginning,
+    // and when a frame could not be had. A whole state comes first then.
     bool needs_whole = false;
-    std::uint64_t whole_seq = 0;  // of the whole state that was sent last
 };
 
 // Clients send nothing but control frames, which the library answers while a read is pending.
@@ -121,8 +123,8 @@ struct WholeFrame {
 
 std::optional<WholeFrame> whole_frame(JobService& service, const SocketUpgrade& upgrade) {
     const auto whole = service.whole_state(upgrade.job_id);
-    if (!whole || !whole->state.any_block) {
-        return std::nullopt;
+    if (!whole || whole->state.seq == 0) {
+        return std::nullopt;  // not begun
     }
     const Model& model = whole->state.model;
     const Box box = Box::whole(model.size);
@@ -140,26 +142,36 @@ bool is_accepted_block(const Event& event) {
            event.fields.find("\"outcome\":\"accepted\"") != std::string::npos;
 }
 
-// Sends a whole state in place of the frames that could not be had.
-net::awaitable<bool> write_whole(Session& session) {
-    auto make = [&session] { return whole_frame(session.context.api->service(), session.upgrade); };
+// Sends a whole state that includes everything up to `seq`, if there is one: a job that is solved
+// again after a restart has none until it has come so far. False when the client is gone.
+net::awaitable<bool> write_whole(Session& session, std::uint64_t seq) {
+    auto make = [&session] {
+        return whole_frame(session.context.api->service(), session.upgrade);
+    };
     const auto whole = co_await on_pool(*session.context.pool, make);
-    session.needs_whole = false;
-    if (!whole) {
+    if (!whole || whole->seq < seq) {
         co_return true;
     }
-    session.whole_seq = whole->seq;
+    session.needs_whole = false;
     co_return co_await write(session, whole->bytes, true);
 }
 
+// A frame laid upon a state that includes it already is made good by the frames that follow it up
+// to that state; so every frame that can be had is sent, and none is left out in between.
 net::awaitable<bool> write_event(Session& session, const Event& event) {
-    const std::string text = proto::event_json(event.seq, event.type, event.time, event.fields);
+    const std::string text =
+        proto::event_json(event.seq, event.type, event.time, event.fields);
     if (!co_await write(session, text, false)) {
         co_return false;
     }
-    // A whole state that was sent before may include this block already.
-    if (session.upgrade.partial == Partial::kNone || !is_accepted_block(event) ||
-        session.needs_whole || event.seq <= session.whole_seq) {
+    const bool is_block = is_accepted_block(event);
+    if (session.upgrade.partial == Partial::kNone || (!is_block && event.type != "started")) {
+        co_return true;
+    }
+    if (session.needs_whole && !co_await write_whole(session, event.seq)) {
+        co_return false;
+    }
+    if (session.needs_whole || !is_block) {
         co_return true;
     }
     auto make = [&session, &event] {
@@ -168,38 +180,40 @@ net::awaitable<bool> write_event(Session& session, const Event& event) {
     const auto frame = co_await on_pool(*session.context.pool, make);
     if (!frame) {
         session.needs_whole = true;
-        co_return true;
+        co_return co_await write_whole(session, event.seq);
     }
     co_return co_await write(session, *frame, true);
 }
 
-// For a reader that lags: one snapshot in place of the events up to the newest but the last.
-net::awaitable<bool> write_snapshot(Session& session, std::uint64_t head) {
-    auto find = [&session] { return session.context.api->service().find(session.upgrade.job_id); };
+// For a reader that lags: one snapshot in place of the events in between. A job that has ended is
+// read to its end as it is, since its snapshot would say more than the events before the last.
+net::awaitable<bool> write_snapshot(Session& session) {
+    auto find = [&session] {
+        return session.context.api->service().find(session.upgrade.job_id);
+    };
     const auto job = co_await on_pool(*session.context.pool, find);
-    if (!job) {
+    session.slow = false;
+    if (!job || proto::is_ended(job->state) || job->head <= session.cursor.position()) {
         co_return true;
     }
-    // The last event is never replaced.
-    const std::uint64_t seq = proto::is_ended(job->state) ? head - 1 : head;
     const std::string text = proto::event_json(
-        seq, "snapshot", job->created, proto::snapshot_fields(proto::to_json(*job))
+        job->head, "snapshot", now_millis(), proto::snapshot_fields(proto::to_json(*job))
     );
-    session.cursor.skip_to(seq);
+    session.cursor.skip_to(job->head);
     session.needs_whole = session.upgrade.partial != Partial::kNone;
-    session.slow = false;
     co_return co_await write(session, text, false);
 }
 
 net::awaitable<void> write_events(Session& session) {
     constexpr auto kWait = std::chrono::milliseconds(500);
+    constexpr auto kWaitForWhole = std::chrono::milliseconds(20);
     bool open = true;
     while (open && !session.peer_gone) {
         if (session.context.counters->draining) {
             session.closing = {websocket::close_code::going_away, "the server is stopping"};
             break;
         }
-        const auto batch = co_await session.cursor.next(kWait);
+        const auto batch = co_await session.cursor.next(session.needs_whole ? kWaitForWhole : kWait);
         if (batch.gone) {
             session.closing = {websocket::close_code::going_away, "the job was deleted"};
             break;
@@ -207,24 +221,20 @@ net::awaitable<void> write_events(Session& session) {
         for (const Event& event : batch.page.events) {
             const bool last = batch.finished && event.seq == batch.page.head;
             if (open && last && session.needs_whole) {
-                open = co_await write_whole(session);
+                open = co_await write_whole(session, event.seq - 1);
             }
-            if (open) {
-                open = co_await write_event(session, event);
-            }
-            const std::uint64_t lag = batch.page.head - event.seq;
-            if (open && session.slow && lag > kLagMax) {
-                open = co_await write_snapshot(session, batch.page.head);
-                break;
-            }
+            open = open && co_await write_event(session, event);
         }
-        const bool caught_up = session.cursor.position() >= batch.page.head;
-        if (open && session.needs_whole && caught_up) {
-            open = co_await write_whole(session);
-        }
-        if (batch.finished && caught_up) {
+        if (batch.finished) {
             session.closing = {websocket::close_code::normal, "the job has ended"};
             break;
+        }
+        const bool lags = batch.page.head > session.cursor.position() + kLagMax;
+        if (open && session.slow && lags) {
+            open = co_await write_snapshot(session);
+        }
+        if (open && session.needs_whole && batch.page.events.empty()) {
+            open = co_await write_whole(session, session.cursor.position());
         }
     }
     if (session.closing.code != websocket::close_code::none) {

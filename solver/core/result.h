@@ -23,6 +23,7 @@ enum class ErrorCode : std::uint8_t {
 struct Fault {
     std::string pointer;
     std::string detail;
+    bool over_limit = false;  // it passes a limit of whoever checks, not a rule
 };
 
 // An error with one sentence for a person and, for bad input, every fault that was found.

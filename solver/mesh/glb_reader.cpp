@@ -198,6 +198,9 @@ Result<tinygltf::Model> parse(std::span<const std::byte> bytes) {
         static_cast<unsigned int>(bytes.size())
     );
     if (!loaded) {
+        if (errors.find("json.exception") != std::string::npos) {
+            return tl::unexpected(invalid("its JSON is malformed"));
+        }
         const std::string first_line = errors.substr(0, errors.find('\n'));
         return tl::unexpected(invalid("cannot be read: " + first_line.substr(0, 200)));
     }
@@ -378,10 +381,12 @@ class KitReader {
         struct Step {
             std::size_t node;
             Transform transform;
-            int target;  // mesh of the kit under which geometry is gathered; -1: none yet
+            // The mesh of the kit under which geometry is gathered; -1: none yet.
+            int target;
+            // Of the nearest named node above that has no geometry of its own.
+            std::string name;
         };
-
-        std::vector<Step> steps = {{root, {}, -1}};
+        std::vector<Step> steps = {{root, {}, -1, ""}};
         while (!steps.empty()) {
             const Step step = steps.back();
             steps.pop_back();
@@ -392,7 +397,15 @@ class KitReader {
             const tinygltf::Node& node = model_.nodes[step.node];
             Transform transform = step.transform.after(local_transform(node));
             int target = step.target;
-            if (target < 0 && node.mesh >= 0) {
+            std::string name = step.name;
+            if (target < 0 && node.mesh < 0 && !node.name.empty()) {
+                name = node.name;  // perhaps its geometry is in nodes below without a name
+                transform = local_transform(node);
+                transform.columns[3] = {0, 0, 0};
+            }
+            if (target < 0 && node.mesh >= 0 && node.name.empty() && !step.name.empty()) {
+                target = mesh_named(step.name);
+            } else if (target < 0 && node.mesh >= 0) {
                 if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
                     return tl::unexpected(invalid("a node has a mesh that does not exist"));
                 }
@@ -409,10 +422,18 @@ class KitReader {
                 }
             }
             for (const int child : node.children) {
-                steps.push_back({static_cast<std::size_t>(child), transform, target});
+                steps.push_back({static_cast<std::size_t>(child), transform, target, name});
             }
         }
         return {};
+    }
+
+    // The last mesh when it has the name, or a new one: the parts of one node follow each other.
+    int mesh_named(const std::string& name) {
+        if (kit_.meshes.empty() || kit_.meshes.back().name != name) {
+            kit_.meshes.push_back({name, {}});
+        }
+        return static_cast<int>(kit_.meshes.size()) - 1;
     }
 
     Result<void> read_mesh(int index, const Transform& transform, int target) {

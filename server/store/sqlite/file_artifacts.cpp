@@ -247,10 +247,16 @@ void FileArtifacts::sweep(const std::function<bool(const std::string&)>& is_used
 }
 
 void FileArtifacts::unpin(const std::string& digest) {
-    const std::lock_guard lock(mutex_);
-    const auto found = pins_.find(digest);
-    if (--found->second == 0) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = pins_.find(digest);
+        if (--found->second > 0) {
+            return;
+        }
         pins_.erase(found);
+    }
+    if (on_unpinned_) {
+        on_unpinned_(digest);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -25,6 +26,11 @@ class FileArtifacts final : public ArtifactStore {
     // Removes the file unless somebody holds a pin.
     void remove_if_unpinned(const std::string& digest);
 
+    // Called with each digest whose last pin has gone. Set before the first put().
+    void on_unpinned(std::function<void(const std::string& digest)> hook) {
+        on_unpinned_ = std::move(hook);
+    }
+
     // Removes every file for which `is_used` answers no. For the start, before anyone else.
     void sweep(const std::function<bool(const std::string& digest)>& is_used);
 
@@ -40,6 +46,7 @@ class FileArtifacts final : public ArtifactStore {
     std::mutex mutex_;
     std::map<std::string, std::size_t> pins_;
     std::uint64_t next_temporary_ = 0;
+    std::function<void(const std::string&)> on_unpinned_;
 };
 
 }  // namespace modelsynth::server

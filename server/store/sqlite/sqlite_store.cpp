@@ -82,7 +82,7 @@ CREATE INDEX example_digest ON example (digest);
 
 constexpr const char* kJobColumns =
     "id, state, solver, seed, created, started, finished, expires, blocks_done, blocks_total, "
-    "request, result, error, ordinal";
+    "request, result, error, ordinal, next_seq";
 
 tl::unexpected<StoreError> failure(StoreErrorCode code, std::string message) {
     return tl::unexpected(StoreError{code, std::move(message)});
@@ -111,6 +111,7 @@ Job job_of(const Statement& row) {
     job.request = row.text(10);
     job.result = row.text(11);
     job.error = row.text(12);
+    job.head = row.natural(14) - 1;
     return job;
 }
 
@@ -151,6 +152,30 @@ Stored<Job> find_job(Database& database, const std::string& id) {
         job.queue_position = queue_position(database, id, now_millis());
     }
     return job;
+}
+
+// The job of an idempotency key, or nothing; a conflict when the key was used for another request.
+Stored<std::optional<Job>> job_of_key(
+    Database& database, const std::string& key, const std::string& request_hash
+) {
+    std::string id;
+    {
+        Statement known =
+            database.prepare("SELECT id, request_hash FROM job WHERE idempotency_key = ?");
+        known.bind(std::string_view(key));
+        if (!known.step()) {
+            return std::optional<Job>();
+        }
+        if (known.text(1) != request_hash) {
+            return failure(StoreErrorCode::kConflict, "the key was used for another request");
+        }
+        id = known.text(0);
+    }
+    auto job = find_job(database, id);
+    if (!job) {
+        return tl::unexpected(std::move(job.error()));
+    }
+    return std::optional<Job>(std::move(*job));
 }
 
 // Whether the lease still holds the job.
@@ -202,7 +227,9 @@ class SqliteStore::Listener final : public EventLog::Subscription {
     ListenerMap::iterator place_;
 };
 
-Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::filesystem::path& directory) {
+Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(
+    const std::filesystem::path& directory, UnixMillis retention_ms
+) {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
     const int lock = ::open((directory / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
@@ -219,7 +246,7 @@ Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::filesystem::pa
     }
     try {
         // The destructor gives the lock back from here on.
-        auto store = std::unique_ptr<SqliteStore>(new SqliteStore(directory, lock));
+        auto store = std::unique_ptr<SqliteStore>(new SqliteStore(directory, lock, retention_ms));
         return store;
     } catch (const std::exception& problem) {
         ::close(lock);
@@ -227,9 +254,12 @@ Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(const std::filesystem::pa
     }
 }
 
-SqliteStore::SqliteStore(const std::filesystem::path& directory, int lock)
+SqliteStore::SqliteStore(
+    const std::filesystem::path& directory, int lock, UnixMillis retention_ms
+)
     : path_((directory / "modelsynth.db").string()),
       lock_(lock),
+      retention_ms_(retention_ms),
       artifacts_(std::make_unique<FileArtifacts>(directory / "artifacts", directory / "tmp")) {
     {
         Database database(path_, Database::Mode::kWriter);
@@ -241,6 +271,17 @@ SqliteStore::SqliteStore(const std::filesystem::path& directory, int lock)
     }
     touched_.clear();
     writer_ = std::make_unique<Writer>(path_);
+    // What was put and never linked, because the job was deleted meanwhile say, goes when the last
+    // pin does.
+    artifacts_->on_unpinned([this](const std::string& digest) {
+        writer_->post(
+            {[this, digest](Database&) -> Stored<void> {
+                 unlinked_digests_.push_back(digest);
+                 return {};
+             },
+             [](const Stored<void>&) {}}
+        );
+    });
     writer_->after_commit([this](Database& database) { after_commit(database); });
 }
 
@@ -292,11 +333,7 @@ void SqliteStore::recover(Database& database) {
     }
     for (const std::string& id : cancelled) {
         const UnixMillis now = now_millis();
-        append_event(database, id, {"cancelled", "{}", now});
-        database.prepare("UPDATE job SET state = 4, finished = ? WHERE id = ?")
-            .bind(now)
-            .bind(std::string_view(id))
-            .run();
+        end_cancelled(database, id, now);
     }
     // One process: whoever held a lease is gone.
     database.execute(
@@ -364,23 +401,33 @@ void SqliteStore::append_event(Database& database, const std::string& id, const 
     touched_.insert(id);
 }
 
+void SqliteStore::end_cancelled(Database& database, const std::string& id, UnixMillis now) {
+    append_event(database, id, {"cancelled", "{}", now});
+    database.prepare("UPDATE job SET state = 4, finished = ?, expires = ? WHERE id = ?")
+        .bind(now)
+        .bind(now + retention_ms_)
+        .bind(std::string_view(id))
+        .run();
+}
+
+Stored<std::optional<Job>> SqliteStore::find_key(
+    const std::string& idempotency_key, const std::string& request_hash
+) {
+    using Found = std::optional<Job>;
+    return with_reader<Found>([&](Database& database) -> Stored<Found> {
+        return job_of_key(database, idempotency_key, request_hash);
+    });
+}
+
 Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) {
     return writer_->call<Submitted>([&](Database& database) -> Stored<Submitted> {
         if (!job.idempotency_key.empty()) {
-            Statement known =
-                database.prepare("SELECT id, request_hash FROM job WHERE idempotency_key = ?");
-            known.bind(std::string_view(job.idempotency_key));
-            if (known.step()) {
-                if (known.text(1) != job.request_hash) {
-                    return failure(
-                        StoreErrorCode::kConflict, "the key was used for another request"
-                    );
-                }
-                auto first = find_job(database, known.text(0));
-                if (!first) {
-                    return tl::unexpected(std::move(first.error()));
-                }
-                return Submitted{std::move(*first), true};
+            auto known = job_of_key(database, job.idempotency_key, job.request_hash);
+            if (!known) {
+                return tl::unexpected(std::move(known.error()));
+            }
+            if (*known) {
+                return Submitted{std::move(**known), true};
             }
         }
         {
@@ -613,7 +660,7 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
             // What is left of an unfinished job is its preview.
             std::vector<ArtifactLink> kept;
             for (const ArtifactLink& artifact : outcome.artifacts) {
-                if (artifact.name == "labels") {
+                if (!artifact.name.ends_with(".glb")) {
                     kept.push_back(artifact);
                 }
             }
@@ -635,7 +682,7 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
             )
             .bind(static_cast<std::int64_t>(state))
             .bind(outcome.finished)
-            .bind(outcome.expires)
+            .bind(outcome.finished + retention_ms_)
             .bind(std::string_view(succeeded ? outcome.result : ""))
             .bind(std::string_view(failed ? outcome.error : ""))
             .bind(std::string_view(id))
@@ -669,11 +716,7 @@ Stored<Job> SqliteStore::cancel(const std::string& id, UnixMillis now) {
                 .run();
             return job;
         }
-        append_event(database, id, {"cancelled", "{}", now});
-        database.prepare("UPDATE job SET state = 4, finished = ? WHERE id = ?")
-            .bind(now)
-            .bind(std::string_view(id))
-            .run();
+        end_cancelled(database, id, now);
         return find_job(database, id);
     });
 }

@@ -29,8 +29,9 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     // Opens or makes the store and takes back what a crash left: jobs that were running are
     // queued again, unreferenced files are removed. Fails: kUnavailable, kConflict when another
     // process has it or a newer version wrote it.
+    // Ended jobs expire after `retention_ms`.
     [[nodiscard]] static Stored<std::unique_ptr<SqliteStore>> open(
-        const std::filesystem::path& directory
+        const std::filesystem::path& directory, proto::UnixMillis retention_ms
     );
 
     ~SqliteStore() override;
@@ -39,6 +40,9 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
 
     // JobStore
     [[nodiscard]] Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) override;
+    [[nodiscard]] Stored<std::optional<proto::Job>> find_key(
+        const std::string& idempotency_key, const std::string& request_hash
+    ) override;
     [[nodiscard]] Stored<proto::Job> find(const std::string& id) override;
     [[nodiscard]] Stored<JobPage> list(const JobQuery& query) override;
     [[nodiscard]] Stored<std::size_t> queued_count() override;
@@ -76,12 +80,15 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     class Listener;
     using ListenerMap = std::multimap<std::string, Listener*>;
 
-    SqliteStore(const std::filesystem::path& directory, int lock);
+    SqliteStore(
+        const std::filesystem::path& directory, int lock, proto::UnixMillis retention_ms
+    );
 
     void prepare_schema(Database& database);
     void recover(Database& database);
     void after_commit(Database& database);
 
+    void end_cancelled(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
     void unlink_artifacts(Database& database, const std::string& id, bool keep_unfinished);
     Stored<void> link_artifacts(
@@ -94,6 +101,7 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
 
     std::string path_;
     int lock_;
+    proto::UnixMillis retention_ms_;
     std::unique_ptr<FileArtifacts> artifacts_;
 
     // Only the writer's thread uses these.
