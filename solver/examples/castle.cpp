@@ -30,11 +30,11 @@ castle::Palette add_palette(ExampleBuilder& builder) {
 
 void add_ground(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_empty(' ', "air");
-    builder.add_piece('.', "grass", make_grass(palette));
-    builder.add_piece(',', "tufts", make_tufts(palette));
+    builder.add_piece('.', "grass", make_grass(palette), 0.25);
+    builder.add_piece(',', "tufts", make_tufts(palette), 0.4);
     builder.add_piece('*', "boulders", make_boulders(palette));
     builder.add_axial("-|", "path", make_path(palette));
-    builder.add_piece('o', "place", make_place(palette));
+    builder.add_piece('o', "place", make_place(palette), 0.4);
     builder.add_piece('t', "tree", make_tree_foot(palette));
     builder.add_piece('T', "tree_crown", make_tree_crown(palette));
     builder.add_piece('y', "cypress", make_cypress_foot(palette));
