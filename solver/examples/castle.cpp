@@ -31,10 +31,10 @@ castle::Palette add_palette(ExampleBuilder& builder) {
 void add_ground(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_empty(' ', "air");
     builder.add_piece('.', "grass", make_grass(palette), 0.25);
-    builder.add_piece(',', "tufts", make_tufts(palette), 0.4);
+    builder.add_piece(',', "tufts", make_tufts(palette), 0.6);
     builder.add_piece('*', "boulders", make_boulders(palette));
-    builder.add_axial("-|", "path", make_path(palette));
-    builder.add_piece('o', "place", make_place(palette), 0.4);
+    builder.add_axial("-|", "path", make_path(palette), 0.6);
+    builder.add_piece('o', "place", make_place(palette), 0.2);
     builder.add_piece('t', "tree", make_tree_foot(palette));
     builder.add_piece('T', "tree_crown", make_tree_crown(palette));
     builder.add_piece('y', "cypress", make_cypress_foot(palette));
@@ -47,7 +47,7 @@ void add_walls(ExampleBuilder& builder, const castle::Palette& palette) {
     constexpr castle::Arms kCorner = {true, true, false, false};
     constexpr castle::Arms kFork = {true, true, false, true};
     constexpr castle::Arms kCross = {true, true, true, true};
-    builder.add_axial("=!", "wall_foot", make_wall_foot(palette, kStraight));
+    builder.add_axial("=!", "wall_foot", make_wall_foot(palette, kStraight), 2);
     builder.add_axial("~:", "wall_top", make_wall_top(palette, kStraight));
     builder.add_turned("1234", "wall_corner_foot", make_wall_foot(palette, kCorner));
     builder.add_turned("abcd", "wall_corner_top", make_wall_top(palette, kCorner));
@@ -55,38 +55,39 @@ void add_walls(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_turned("efgh", "wall_fork_top", make_wall_top(palette, kFork));
     builder.add_piece('+', "wall_cross_foot", make_wall_foot(palette, kCross));
     builder.add_piece('%', "wall_cross_top", make_wall_top(palette, kCross));
-    builder.add_axial("&;", "gate_foot", make_gate_foot(palette));
+    builder.add_axial("&;", "gate_foot", make_gate_foot(palette), 3);
     builder.add_axial("'N", "gate_top", make_gate_top(palette));
 }
 
 void add_towers(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_piece('i', "turret_foot", make_turret_foot(palette));
-    builder.add_piece('l', "turret_storey", make_turret_storey(palette, false));
+    builder.add_piece('i', "turret_foot", make_turret_foot(palette), 0.6);
+    builder.add_piece('l', "turret_storey", make_turret_storey(palette, false), 0.6);
     builder.add_piece('I', "turret_windows", make_turret_storey(palette, true));
     builder.add_piece('M', "turret_battlement", make_turret_battlement(palette));
     builder.add_piece('^', "turret_roof", make_turret_roof(palette, false));
     builder.add_piece('u', "turret_roof_flag", make_turret_roof(palette, true));
 
     builder.add_turned("ABCD", "foot_corner", make_foot_corner(palette));
-    builder.add_turned("EFGH", "foot_side", make_foot_side(palette, false));
+    builder.add_turned("EFGH", "foot_side", make_foot_side(palette, false), 0.6);
     builder.add_turned("JKLO", "door", make_foot_side(palette, true));
-    builder.add_piece('#', "inside_foot", make_inside(palette));
-    builder.add_turned("QRSV", "storey_corner", make_storey_corner(palette));
+    builder.add_piece('#', "inside_foot", make_inside(palette), 0.6);
+    builder.add_turned("QRSV", "storey_corner", make_storey_corner(palette), 0.8);
     builder.add_turned("jkpq", "storey_side", make_storey_side(palette));
     builder.add_piece('@', "inside", make_inside(palette));
-    builder.add_turned("rsvx", "battlement_corner", make_battlement_corner(palette));
+    builder.add_turned("rsvx", "battlement_corner", make_battlement_corner(palette), 1.6);
     builder.add_turned("{}<>", "battlement_side", make_battlement_side(palette));
     builder.add_piece('_', "deck", make_deck(palette, false));
     builder.add_piece('P', "deck_flag", make_deck(palette, true));
 }
 
 void add_roofs(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_turned("WXZz", "roof_corner", make_roof_corner(palette));
+    builder.add_turned("WXZz", "roof_corner", make_roof_corner(palette), 0.8);
     builder.add_turned("/()U", "roof_side", make_roof_side(palette));
+    builder.add_piece('?', "roof_chimney", make_roof_chimney(palette), 0.6);
     builder.add_turned("[]$`", "roof_valley", make_roof_valley(palette));
     MeshBuilder flagged = make_spire(palette);
     add_spire_flag(flagged, palette);
-    builder.add_piece('m', "spire_e", std::move(flagged));
+    builder.add_piece('m', "spire_e", std::move(flagged), 3);
     const char* const names[] = {"spire_n", "spire_w", "spire_s"};
     for (int turns = 1; turns < 4; ++turns) {
         builder.add_piece(
@@ -94,7 +95,8 @@ void add_roofs(ExampleBuilder& builder, const castle::Palette& palette) {
             names[turns - 1],
             std::move(MeshBuilder().turned(
                 turns, [&](MeshBuilder& quarter) { quarter = make_spire(palette); }
-            ))
+            )),
+            3
         );
     }
 }

@@ -51,6 +51,20 @@ MeshBuilder make_roof_side(const Palette& palette) {
     return mesh;
 }
 
+MeshBuilder make_roof_chimney(const Palette& palette) {
+    MeshBuilder mesh;
+    mesh.turned(3, [&](MeshBuilder& south) { south = make_roof_side(palette); });
+    mesh.material(palette.stone).tint(0.95F);
+    mesh.open_box({{-0.3F, 0.5F, -0.15F}, {0.3F, 2.3F, 0.35F}}, "EWSN");
+    mesh.material(palette.trim).tint(1);
+    mesh.bevelled_box({{-0.38F, 2.3F, -0.23F}, {0.38F, 2.46F, 0.43F}}, 0.05F);
+    mesh.material(palette.dark);
+    for (const float x : {-0.16F, 0.16F}) {
+        mesh.cylinder(x, 0.1F, 0.1F, 2.4F, 2.7F, 6);
+    }
+    return mesh;
+}
+
 MeshBuilder make_roof_valley(const Palette& palette) {
     MeshBuilder mesh;
     // The same courses as the sides', cut at the corner of the cell, where two eaves meet.

@@ -8,6 +8,8 @@ namespace modelsynth::examples::castle {
 
 [[nodiscard]] MeshBuilder make_roof_corner(const Palette& palette);
 [[nodiscard]] MeshBuilder make_roof_side(const Palette& palette);
+// A side towards the south, with a chimney.
+[[nodiscard]] MeshBuilder make_roof_chimney(const Palette& palette);
 [[nodiscard]] MeshBuilder make_roof_valley(const Palette& palette);
 
 // A quarter of the steep roof of a tower of two by two; one of the four carries the flag.

@@ -56,6 +56,16 @@ void add_quoins(MeshBuilder& mesh, const Palette& palette, int first) {
     mesh.tint(kStoneTint);
 }
 
+// Flagstones on a deck, as far as `east` and the cell's other borders.
+void add_slabs(MeshBuilder& mesh, const Palette& palette, float east) {
+    mesh.turned(0, [&](MeshBuilder& slabs) {
+        slabs.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& level) {
+            add_cobbles(level, palette, 111, {{-1, 0, -1}, {east, 0.012F, 1}}, 2, 3);
+        });
+        slabs.shade([](const Vec3&, const Vec3&) { return 0.86F; });
+    });
+}
+
 void add_corner_merlon(MeshBuilder& mesh) {
     const float o = kOut;
     const float c = kTowerCut;
@@ -299,6 +309,10 @@ MeshBuilder make_battlement_corner(const Palette& palette) {
             {-1, kDeck, 1}, {edge[i].u, kDeck, edge[i].v}, {edge[i + 1].u, kDeck, edge[i + 1].v}
         );
     }
+    mesh.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& level) {
+        add_cobbles(level, palette, 112, {{-1, 0, -kIn}, {0.5F, 0.012F, 1}}, 2, 3);
+        level.shade([](const Vec3&, const Vec3&) { return 0.86F; });
+    });
     return mesh;
 }
 
@@ -318,6 +332,7 @@ MeshBuilder make_battlement_side(const Palette& palette) {
     });
     mesh.material(palette.paving).tint(0.75F);
     mesh.quad({-1, kDeck, 1}, {kIn, kDeck, 1}, {kIn, kDeck, -1}, {-1, kDeck, -1});
+    add_slabs(mesh, palette, kIn);
     return mesh;
 }
 
@@ -325,13 +340,11 @@ MeshBuilder make_deck(const Palette& palette, bool flag) {
     MeshBuilder mesh;
     mesh.material(palette.paving).tint(0.75F);
     mesh.quad({-1, kDeck, 1}, {1, kDeck, 1}, {1, kDeck, -1}, {-1, kDeck, -1});
+    add_slabs(mesh, palette, 1);
     if (flag) {
         mesh.material(palette.trim).tint(1);
         mesh.bevelled_box({{-0.3F, kDeck, -0.3F}, {0.3F, kDeck + 0.35F, 0.3F}}, 0.06F);
         add_flag(mesh, palette, {0, kDeck, 0}, 3.4F);
-    } else {
-        mesh.material(palette.wood).tint(1);
-        mesh.bevelled_box({{-0.5F, kDeck, -0.4F}, {0.3F, kDeck + 0.12F, 0.4F}}, 0.04F);
     }
     return mesh;
 }
