@@ -123,7 +123,7 @@ void add_corbels(MeshBuilder& mesh, const Palette& palette, float x0, float x1, 
             {{x - 0.08F, y - 0.34F, z - 0.01F}, {x + 0.08F, y - 0.16F, z + 0.07F}}, "EWDS"
         );
         mesh.open_box(
-            {{x - 0.08F, y - 0.16F, z - 0.01F}, {x + 0.08F, y + 0.1F, z + 0.16F}}, "EWDS"
+            {{x - 0.08F, y - 0.16F, z - 0.01F}, {x + 0.08F, y + 0.1F, z + 0.16F}}, "EWUDS"
         );
     }
     mesh.tint(kStoneTint);
@@ -181,6 +181,12 @@ void add_flag(MeshBuilder& mesh, const Palette& palette, const Vec3& foot, float
             corner(i + 1, kThin, 1),
             corner(i + 1, -kThin, 1),
             corner(i, -kThin, 1)
+        );
+        mesh.quad(
+            corner(i, -kThin, -1),
+            corner(i + 1, -kThin, -1),
+            corner(i + 1, kThin, -1),
+            corner(i, kThin, -1)
         );
     }
     mesh.tint(1);
