@@ -309,11 +309,11 @@ MeshBuilder& MeshBuilder::gable_roof(const Extent& extent, float overhang, float
         const std::size_t under_ridge = 4;
         const std::size_t foot = i == 0 ? 5 : 3;
         if (i == 0) {
+            quad(at(x1, foot), at(x1, under_ridge), at(x1, ridge), at(x1, i));
+            quad(at(x0, i), at(x0, ridge), at(x0, under_ridge), at(x0, foot));
+        } else {
             quad(at(x1, foot), at(x1, i), at(x1, ridge), at(x1, under_ridge));
             quad(at(x0, under_ridge), at(x0, ridge), at(x0, i), at(x0, foot));
-        } else {
-            quad(at(x1, under_ridge), at(x1, ridge), at(x1, i), at(x1, foot));
-            quad(at(x0, foot), at(x0, i), at(x0, ridge), at(x0, under_ridge));
         }
     }
     triangle({x1, y0, z1}, {x1, y0, z0}, {x1, y1 - thickness, middle});
