@@ -199,7 +199,7 @@ std::optional<SideBoundary> read_side(const Value& value, const RequestLimits& l
     if (*text == "periodic") {
         return SideBoundary{BoundaryKind::kPeriodic, {}};
     }
-    return SideBoundary{BoundaryKind::kPieces, {std::move(*text)}};
+    return SideBoundary{BoundaryKind::kPieces, {std::move(*text)}, false};
 }
 
 OrderedJson write_side(const SideBoundary& side) {

@@ -67,7 +67,9 @@ bool only_too_large(const std::vector<Fault>& faults) {
 
 // What only shows once the defaults are filled in: against the example, and against the limits.
 void check_complete(
-    const Example& example, const Parameters& parameters, const RequestLimits& limits,
+    const Example& example,
+    const Parameters& parameters,
+    const RequestLimits& limits,
     Faults& faults
 ) {
     faults.add_all("/parameters", find_faults(example, parameters));
@@ -140,8 +142,8 @@ Parsed<JobRequest> parse_job_request(
     if (const auto given = reader.optional("parameters")) {
         parameters = read_parameters(*given, limits);
         const bool asks_size = given->json().is_object() && given->json().contains("size");
-        size_is_usable = !asks_size || (parameters.size && parameters.size->cell_count() <=
-                                                               limits.model_cells_max);
+        size_is_usable = !asks_size || (parameters.size &&
+                                        parameters.size->cell_count() <= limits.model_cells_max);
     }
     if (const auto priority = reader.optional("priority")) {
         request.priority = static_cast<std::int32_t>(priority->integer(-10, 10).value_or(0));

@@ -129,15 +129,15 @@ std::string range_text(double min, double max) {
 }  // namespace
 
 Parsed<Json> parse_json(std::string_view text, const JsonLimits& limits) {
-    // The library takes a NUL for the end of the text.
+    Scanner scanner(limits);
+    if (!Json::sax_parse(text, &scanner)) {
+        return tl::unexpected(make_problem("malformed-json", scanner.error()));
+    }
+    // The library takes a NUL for the end of the text, whatever follows.
     if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
         return tl::unexpected(make_problem(
             "malformed-json", "there is a NUL character (at byte " + std::to_string(nul) + ")"
         ));
-    }
-    Scanner scanner(limits);
-    if (!Json::sax_parse(text, &scanner)) {
-        return tl::unexpected(make_problem("malformed-json", scanner.error()));
     }
     return Json::parse(text, nullptr, false);
 }

@@ -367,8 +367,7 @@ std::optional<Response> check_handshake(const Call& call) {
         return false;
     };
     const auto upgrade_required = [&call](const char* detail) {
-        Response response =
-            refuse(call, {"about:blank", "Upgrade Required", 426, detail, {}, {}});
+        Response response = refuse(call, {"about:blank", "Upgrade Required", 426, detail, {}, {}});
         response.headers.emplace_back("Upgrade", "websocket");
         response.headers.emplace_back("Sec-WebSocket-Version", "13");
         return response;
@@ -384,14 +383,13 @@ std::optional<Response> check_handshake(const Call& call) {
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     if (key.size() != 24 || key.find_first_not_of(kBase64) != 22 || !key.ends_with("==")) {
         return refuse(
-            call,
-            make_problem("malformed-request", "Sec-WebSocket-Key must be 16 bytes in base64")
+            call, make_problem("malformed-request", "Sec-WebSocket-Key must be 16 bytes in base64")
         );
     }
-    if (!has("sec-websocket-protocol", "modelsynth.v1")) {
+    const auto offered = list_items(request.header_list("sec-websocket-protocol").value_or(""));
+    if (std::find(offered.begin(), offered.end(), "modelsynth.v1") == offered.end()) {
         return refuse(
-            call,
-            make_problem("malformed-request", "the subprotocol modelsynth.v1 must be offered")
+            call, make_problem("malformed-request", "the subprotocol modelsynth.v1 must be offered")
         );
     }
     return std::nullopt;

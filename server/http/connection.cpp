@@ -198,9 +198,8 @@ class Connection {
         constexpr std::size_t kPiece = 16 * 1024;
         auto space = buffer_.prepare(kPiece);
         timer_.expires_at(until);
-        auto outcome = co_await (
-            stream_.socket().async_read_some(space, kToken) || timer_.async_wait(kToken)
-        );
+        auto outcome =
+            co_await (stream_.socket().async_read_some(space, kToken) || timer_.async_wait(kToken));
         if (outcome.index() == 1) {
             co_return ErrorCode(beast::error::timeout);
         }
@@ -312,8 +311,7 @@ class Connection {
         using namespace net::experimental::awaitable_operators;
         timer_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
         auto outcome = co_await (
-            http::async_read(stream_.socket(), buffer_, parser, kToken) ||
-            timer_.async_wait(kToken)
+            http::async_read(stream_.socket(), buffer_, parser, kToken) || timer_.async_wait(kToken)
         );
         if (outcome.index() == 1) {
             co_return ErrorCode(beast::error::timeout);

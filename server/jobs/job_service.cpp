@@ -71,14 +71,7 @@ void JobService::work(const std::stop_token& stop) {
     // A notification is a hint; what is queued is found by looking.
     constexpr auto kPoll = std::chrono::milliseconds(250);
     const WorkerContext context = {
-        jobs_,
-        events_,
-        artifacts_,
-        examples_,
-        live_,
-        running_,
-        config_.limits,
-        log_};
+        jobs_, events_, artifacts_, examples_, live_, running_, config_.limits, log_};
     std::uint64_t seen = 0;
     while (!stop.stop_requested()) {
         {
@@ -262,16 +255,20 @@ Parsed<std::string> JobService::model_digest(const std::string& id, GlbProfile p
     return (*pin)->digest();
 }
 
-std::optional<JobService::WholeState> JobService::whole_state(const std::string& id) {
+std::optional<JobService::WholeState> JobService::whole_state(
+    const std::string& id, std::uint64_t seq
+) {
     if (const auto live = live_.find(id)) {
-        return WholeState{live->example(), live->state()};
+        auto state = live->state_at(seq);
+        return state ? std::optional(WholeState{live->example(), std::move(*state)}) : std::nullopt;
     }
     const auto job = jobs_.find(id);
     if (!job || !proto::is_ended(job->state)) {
         return std::nullopt;
     }
     auto loaded = load_model(*job);
-    if (!loaded) {
+    // Of the steps in between nothing is kept, so there is one state, and it stands at the end.
+    if (!loaded || job->head - 1 != seq) {
         return std::nullopt;
     }
     return WholeState{loaded->example, {job->head - 1, std::move(loaded->model), true}};
@@ -285,7 +282,9 @@ Parsed<std::string> JobService::preview(const std::string& id) {
     if (has_expired(*job)) {
         return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
     }
-    const auto whole = whole_state(id);
+    const auto live = live_.find(id);
+    const auto whole = live ? std::optional(WholeState{live->example(), live->state()})
+                            : whole_state(id, job->head - 1);
     if (!whole || !whole->state.any_block) {
         return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
     }

@@ -70,14 +70,14 @@ class JobService {
     [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
     [[nodiscard]] proto::Parsed<std::string> labels_json(const std::string& id);
 
-    // The state of a job after an event, for whoever missed frames: labels and the seq up to
-    // which they include everything. Nothing when there is no model yet.
+    // The state of a job at an event or later, for whoever missed frames: labels and the seq up
+    // to which they include everything. Nothing when there is no such state (yet).
     struct WholeState {
         Example example;
         LiveJob::State state;
     };
 
-    [[nodiscard]] std::optional<WholeState> whole_state(const std::string& id);
+    [[nodiscard]] std::optional<WholeState> whole_state(const std::string& id, std::uint64_t seq);
 
     [[nodiscard]] ExampleLibrary& examples() { return examples_; }
 

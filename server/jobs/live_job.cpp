@@ -5,30 +5,40 @@
 
 namespace modelsynth::server {
 
+namespace {
+
+void lay(const Patch& patch, Model& model) {
+    std::size_t next = 0;
+    for_each_cell(patch.region, [&](const Cell& cell) {
+        model.labels[model.size.index(cell)] = patch.labels[next++];
+    });
+}
+
+}  // namespace
+
 LiveJob::LiveJob(Example example, GridSize size) : example_(std::move(example)) {
-    state_.model.size = size;
-    state_.model.labels.assign(size.cell_count(), kNoLabel);
+    base_.size = size;
+    base_.labels.assign(size.cell_count(), kNoLabel);
 }
 
 void LiveJob::start(std::uint64_t seq, std::span<const Label> initial) {
     const std::lock_guard lock(mutex_);
-    state_.seq = seq;
+    base_seq_ = seq;
+    head_seq_ = seq;
     if (!initial.empty()) {
-        state_.model.labels.assign(initial.begin(), initial.end());
+        base_.labels.assign(initial.begin(), initial.end());
     }
 }
 
 void LiveJob::apply(std::shared_ptr<const Patch> patch) {
     const std::lock_guard lock(mutex_);
-    state_.seq = std::max(state_.seq, patch->seq);
-    state_.any_block = true;
-    std::size_t next = 0;
-    for_each_cell(patch->region, [&](const Cell& cell) {
-        state_.model.labels[state_.model.size.index(cell)] = patch->labels[next++];
-    });
+    head_seq_ = std::max(head_seq_, patch->seq);
+    any_block_ = true;
     patch_bytes_ += patch->labels.size() * sizeof(Label);
     patches_.push_back(std::move(patch));
-    while (patch_bytes_ > kPatchBytesMax && patches_.size() > 1) {
+    while (patch_bytes_ > kPatchBytesMax) {
+        lay(*patches_.front(), base_);
+        base_seq_ = patches_.front()->seq;
         patch_bytes_ -= patches_.front()->labels.size() * sizeof(Label);
         patches_.pop_front();
     }
@@ -36,12 +46,30 @@ void LiveJob::apply(std::shared_ptr<const Patch> patch) {
 
 void LiveJob::pass(std::uint64_t seq) {
     const std::lock_guard lock(mutex_);
-    state_.seq = std::max(state_.seq, seq);
+    head_seq_ = std::max(head_seq_, seq);
+}
+
+LiveJob::State LiveJob::build(std::uint64_t seq) const {
+    State state = {seq, base_, any_block_};
+    for (const auto& patch : patches_) {
+        if (patch->seq <= seq) {
+            lay(*patch, state.model);
+        }
+    }
+    return state;
 }
 
 LiveJob::State LiveJob::state() const {
     const std::lock_guard lock(mutex_);
-    return state_;
+    return build(head_seq_);
+}
+
+std::optional<LiveJob::State> LiveJob::state_at(std::uint64_t seq) const {
+    const std::lock_guard lock(mutex_);
+    if (head_seq_ == 0 || head_seq_ < seq) {
+        return std::nullopt;
+    }
+    return build(std::max(seq, base_seq_));
 }
 
 std::shared_ptr<const Patch> LiveJob::patch(std::uint64_t seq) const {
@@ -57,7 +85,7 @@ std::shared_ptr<const Patch> LiveJob::patch(std::uint64_t seq) const {
 
 std::size_t LiveJob::bytes() const {
     const std::lock_guard lock(mutex_);
-    return patch_bytes_ + state_.model.labels.size() * sizeof(Label);
+    return patch_bytes_ + base_.labels.size() * sizeof(Label);
 }
 
 void LiveJobs::add(const std::string& id, std::shared_ptr<LiveJob> job) {

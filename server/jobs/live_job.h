@@ -23,7 +23,8 @@ struct Patch {
 };
 
 // The model of a job as far as its log tells it, for previews and partial frames. It changes only
-// after the event is on disk, so that nobody sees what a crash could take back. Thread-safe.
+// after the event is on disk, so that nobody sees what a crash could take back. Kept as an older
+// state and the patches since, so that every state from there on can be had. Thread-safe.
 class LiveJob {
   public:
     struct State {
@@ -36,16 +37,23 @@ class LiveJob {
 
     [[nodiscard]] const Example& example() const { return example_; }
 
+    [[nodiscard]] const GridSize& size() const { return base_.size; }
+
     // The initial model stands; kNoLabel everywhere where there is none.
     void start(std::uint64_t seq, std::span<const Label> initial);
 
-    // An accepted block; patches older than the last kPatchBytesMax are dropped.
+    // An accepted block; seqs rise. Patches beyond kPatchBytesMax become part of the older state.
     void apply(std::shared_ptr<const Patch> patch);
 
     // A reverted block, or any event that changes nothing.
     void pass(std::uint64_t seq);
 
+    // The newest state.
     [[nodiscard]] State state() const;
+
+    // The state at an event, or the oldest one that can be had when it is newer. Nothing when the
+    // job has not come so far.
+    [[nodiscard]] std::optional<State> state_at(std::uint64_t seq) const;
 
     // What the event changed; nothing when it is no longer kept.
     [[nodiscard]] std::shared_ptr<const Patch> patch(std::uint64_t seq) const;
@@ -55,9 +63,14 @@ class LiveJob {
   private:
     static constexpr std::size_t kPatchBytesMax = std::size_t{8} << 20;
 
+    [[nodiscard]] State build(std::uint64_t seq) const;
+
     Example example_;
     mutable std::mutex mutex_;
-    State state_;
+    Model base_;  // before the patches
+    std::uint64_t base_seq_ = 0;
+    std::uint64_t head_seq_ = 0;
+    bool any_block_ = false;
     std::deque<std::shared_ptr<const Patch>> patches_;
     std::size_t patch_bytes_ = 0;
 };

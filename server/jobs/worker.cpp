@@ -38,7 +38,9 @@ class LoggingObserver final : public Observer {
           claim_(claim),
           running_(running),
           live_(std::move(live)),
-          logged_(std::move(logged)) {}
+          logged_(std::move(logged)) {
+        start_->first_logged = logged_.empty() ? 0 : logged_.front().seq;
+    }
 
     void on_start(std::uint32_t blocks_total, std::span<const Label> initial) override {
         blocks_total_ = blocks_total;
@@ -47,7 +49,11 @@ class LoggingObserver final : public Observer {
         append(
             {"started", proto::started_fields(blocks_total, resumed), now_millis()},
             static_cast<std::uint32_t>(logged_.size()),
-            [live = live_, labels](std::uint64_t seq) { live->start(seq, *labels); }
+            [start = start_, live = live_, labels](std::uint64_t seq) {
+                // What is solved again after a restart belongs to the seqs that it had.
+                live->start(start->first_logged > 0 ? start->first_logged - 1 : seq, *labels);
+                start->seq = seq;
+            }
         );
     }
 
@@ -104,9 +110,15 @@ class LoggingObserver final : public Observer {
             return;
         }
         // In order with the blocks still to be appended, so through the store's queue as well.
-        append_nothing([live = live_, patch = std::move(patch), seq = logged.seq] {
-            show(*live, patch, seq);
-        });
+        const bool last = &logged == &logged_.back();
+        append_nothing(
+            [live = live_, patch = std::move(patch), seq = logged.seq, last, start = start_] {
+                show(*live, patch, seq);
+                if (last) {
+                    live->pass(start->seq);
+                }
+            }
+        );
     }
 
     void append(
@@ -150,8 +162,16 @@ class LoggingObserver final : public Observer {
     const Claim& claim_;
     RunningJobs::Entry& running_;
     std::shared_ptr<LiveJob> live_;
-    GridSize live_size_ = live_->state().model.size;
+    GridSize live_size_ = live_->size();
     std::vector<LoggedBlock> logged_;
+
+    // Where this claim begins in the log; known once it is written, on the store's thread.
+    struct Start {
+        std::uint64_t seq = 0;           // of its `started` event
+        std::uint64_t first_logged = 0;  // seq of the first block logged before; 0: none
+    };
+
+    std::shared_ptr<Start> start_ = std::make_shared<Start>();
     std::uint32_t blocks_total_ = 0;
     bool diverged_ = false;
     Clock::time_point begun_ = Clock::now();

@@ -62,6 +62,7 @@ struct Session {
     // The client has no state that the next block's frame could be laid upon: at the beginning,
     // and when a frame could not be had. A whole state comes first then.
     bool needs_whole = false;
+    std::uint64_t whole_seq = 0;  // what the whole state that was sent last includes
 };
 
 // Clients send nothing but control frames, which the library answers while a read is pending.
@@ -91,7 +92,7 @@ std::string patch_payload(const LiveJob& live, const Patch& patch, Partial parti
         return proto::encode_labels(patch.labels);
     }
     // The region alone, in the whole model's frame.
-    Model model = {live.state().model.size, {}};
+    Model model = {live.size(), {}};
     model.labels.assign(model.size.cell_count(), kNoLabel);
     std::size_t next = 0;
     for_each_cell(patch.region, [&](const Cell& cell) {
@@ -121,10 +122,12 @@ struct WholeFrame {
     std::string bytes;
 };
 
-std::optional<WholeFrame> whole_frame(JobService& service, const SocketUpgrade& upgrade) {
-    const auto whole = service.whole_state(upgrade.job_id);
-    if (!whole || whole->state.seq == 0) {
-        return std::nullopt;  // not begun
+std::optional<WholeFrame> whole_frame(
+    JobService& service, const SocketUpgrade& upgrade, std::uint64_t seq
+) {
+    const auto whole = service.whole_state(upgrade.job_id, seq);
+    if (!whole) {
+        return std::nullopt;
     }
     const Model& model = whole->state.model;
     const Box box = Box::whole(model.size);
@@ -145,34 +148,31 @@ bool is_accepted_block(const Event& event) {
 // Sends a whole state that includes everything up to `seq`, if there is one: a job that is solved
 // again after a restart has none until it has come so far. False when the client is gone.
 net::awaitable<bool> write_whole(Session& session, std::uint64_t seq) {
-    auto make = [&session] {
-        return whole_frame(session.context.api->service(), session.upgrade);
+    auto make = [&session, seq] {
+        return whole_frame(session.context.api->service(), session.upgrade, seq);
     };
     const auto whole = co_await on_pool(*session.context.pool, make);
-    if (!whole || whole->seq < seq) {
+    if (!whole) {
         co_return true;
     }
     session.needs_whole = false;
+    session.whole_seq = whole->seq;
     co_return co_await write(session, whole->bytes, true);
 }
 
-// A frame laid upon a state that includes it already is made good by the frames that follow it up
-// to that state; so every frame that can be had is sent, and none is left out in between.
 net::awaitable<bool> write_event(Session& session, const Event& event) {
-    const std::string text =
-        proto::event_json(event.seq, event.type, event.time, event.fields);
+    const std::string text = proto::event_json(event.seq, event.type, event.time, event.fields);
     if (!co_await write(session, text, false)) {
         co_return false;
     }
-    const bool is_block = is_accepted_block(event);
-    if (session.upgrade.partial == Partial::kNone || (!is_block && event.type != "started")) {
+    if (session.upgrade.partial == Partial::kNone || !is_accepted_block(event)) {
         co_return true;
     }
-    if (session.needs_whole && !co_await write_whole(session, event.seq)) {
-        co_return false;
+    if (session.needs_whole) {  // then the block's frame is the whole state
+        co_return co_await write_whole(session, event.seq);
     }
-    if (session.needs_whole || !is_block) {
-        co_return true;
+    if (event.seq <= session.whole_seq) {
+        co_return true;  // included already
     }
     auto make = [&session, &event] {
         return block_frame(session.context.api->service(), session.upgrade, event.seq);
@@ -185,15 +185,24 @@ net::awaitable<bool> write_event(Session& session, const Event& event) {
     co_return co_await write(session, *frame, true);
 }
 
-// For a reader that lags: one snapshot in place of the events in between. A job that has ended is
-// read to its end as it is, since its snapshot would say more than the events before the last.
+// For a reader that lags: one snapshot in place of the events in between. Never in place of the
+// last event: of an ended job it shows the state before the end.
 net::awaitable<bool> write_snapshot(Session& session) {
-    auto find = [&session] {
-        return session.context.api->service().find(session.upgrade.job_id);
-    };
-    const auto job = co_await on_pool(*session.context.pool, find);
+    auto find = [&session] { return session.context.api->service().find(session.upgrade.job_id); };
+    auto job = co_await on_pool(*session.context.pool, find);
     session.slow = false;
-    if (!job || proto::is_ended(job->state) || job->head <= session.cursor.position()) {
+    if (!job) {
+        co_return true;
+    }
+    if (proto::is_ended(job->state)) {
+        --job->head;
+        job->state = proto::JobState::kRunning;
+        job->finished.reset();
+        job->expires.reset();
+        job->result.clear();
+        job->error.clear();
+    }
+    if (job->head <= session.cursor.position() + kLagMax) {
         co_return true;
     }
     const std::string text = proto::event_json(
@@ -213,7 +222,8 @@ net::awaitable<void> write_events(Session& session) {
             session.closing = {websocket::close_code::going_away, "the server is stopping"};
             break;
         }
-        const auto batch = co_await session.cursor.next(session.needs_whole ? kWaitForWhole : kWait);
+        const auto batch =
+            co_await session.cursor.next(session.needs_whole ? kWaitForWhole : kWait);
         if (batch.gone) {
             session.closing = {websocket::close_code::going_away, "the job was deleted"};
             break;
@@ -224,14 +234,15 @@ net::awaitable<void> write_events(Session& session) {
                 open = co_await write_whole(session, event.seq - 1);
             }
             open = open && co_await write_event(session, event);
+            if (open && session.slow) {
+                session.cursor.skip_to(event.seq);
+                open = co_await write_snapshot(session);
+                break;
+            }
         }
-        if (batch.finished) {
+        if (batch.finished && session.cursor.position() >= batch.page.head) {
             session.closing = {websocket::close_code::normal, "the job has ended"};
             break;
-        }
-        const bool lags = batch.page.head > session.cursor.position() + kLagMax;
-        if (open && session.slow && lags) {
-            open = co_await write_snapshot(session);
         }
         if (open && session.needs_whole && batch.page.events.empty()) {
             open = co_await write_whole(session, session.cursor.position());

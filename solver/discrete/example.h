@@ -37,6 +37,7 @@ enum class BoundaryKind : std::uint8_t {
 struct SideBoundary {
     BoundaryKind kind = BoundaryKind::kFree;
     std::vector<std::string> pieces = {};  // for kPieces
+    bool is_list = true;  // the pieces were given as a list; a fault's pointer depends on it
 
     friend bool operator==(const SideBoundary&, const SideBoundary&) = default;
 };

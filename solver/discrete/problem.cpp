@@ -105,13 +105,10 @@ void find_boundary_faults(
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
         const SideBoundary& boundary = *parameters.boundary[side];
         const std::string pointer = std::string("/boundary/") + kSideNames[side];
-        if (boundary.kind == BoundaryKind::kPieces && boundary.pieces.size() > 1) {
+        if (boundary.kind == BoundaryKind::kPieces && boundary.is_list) {
             find_unknown_pieces(labels, boundary.pieces, pointer, faults);
         } else if (boundary.kind == BoundaryKind::kPieces && !labels.contains(boundary.pieces[0])) {
-            // One piece may have been given by itself, not in a list.
-            faults.push_back(
-                {pointer, "the example has no piece \"" + boundary.pieces[0] + "\""}
-            );
+            faults.push_back({pointer, "the example has no piece \"" + boundary.pieces[0] + "\""});
         }
         if (boundary.kind == BoundaryKind::kExample && example.size.cell_count() == 0) {
             faults.push_back({pointer, "the example has no cells to take the boundary from"});

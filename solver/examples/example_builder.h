@@ -48,7 +48,6 @@ class ExampleBuilder {
     void add_floor(std::initializer_list<std::string_view> rows);
     void add_floor(std::vector<std::string> rows);
 
-
     void set_boundary(const discrete::Boundary& boundary);
     void set_default_size(const GridSize& size);
 

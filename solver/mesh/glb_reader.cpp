@@ -386,6 +386,7 @@ class KitReader {
             // Of the nearest named node above that has no geometry of its own.
             std::string name;
         };
+
         std::vector<Step> steps = {{root, {}, -1, ""}};
         while (!steps.empty()) {
             const Step step = steps.back();

@@ -207,12 +207,28 @@ class BufferWriter {
         return accessor;
     }
 
-    // Instance attributes; their view has no target.
+    // Instance attributes: one view for all, without a target, since a view and bounds for each
+    // would weigh more than the numbers themselves. Call it last, and add nothing after it.
     int translations(const std::vector<Vec3>& values) {
-        const int accessor = add(values.data(), values.size(), sizeof(Vec3), 0);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-        set_bounds(accessor, values);
-        return accessor;
+        if (translations_view_ < 0) {
+            translations_view_ = static_cast<int>(model_.bufferViews.size());
+            tinygltf::BufferView view;
+            view.buffer = 0;
+            view.byteOffset = data().size();
+            model_.bufferViews.push_back(std::move(view));
+        }
+        auto& view = model_.bufferViews[static_cast<std::size_t>(translations_view_)];
+        tinygltf::Accessor accessor;
+        accessor.bufferView = translations_view_;
+        accessor.byteOffset = view.byteLength;
+        accessor.count = values.size();
+        accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+        accessor.type = TINYGLTF_TYPE_VEC3;
+        model_.accessors.push_back(std::move(accessor));
+        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+        data().insert(data().end(), bytes, bytes + values.size() * sizeof(Vec3));
+        view.byteLength += values.size() * sizeof(Vec3);
+        return static_cast<int>(model_.accessors.size()) - 1;
     }
 
     [[nodiscard]] std::size_t bytes() const { return data().size(); }
@@ -262,6 +278,7 @@ class BufferWriter {
     [[nodiscard]] const std::vector<unsigned char>& data() const { return model_.buffers[0].data; }
 
     tinygltf::Model& model_;
+    int translations_view_ = -1;
 };
 
 tinygltf::Primitive write_primitive(

@@ -5,6 +5,10 @@
 // DIR holds label grids in the example format (castle.json, ...); built-in examples are timed in
 // any case.
 
+#include "proto/example_codec.h"
+#include "solver/discrete/synthesis.h"
+#include "solver/examples/built_in.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -15,10 +19,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "proto/example_codec.h"
-#include "solver/discrete/synthesis.h"
-#include "solver/examples/built_in.h"
 
 namespace {
 
@@ -40,9 +40,7 @@ struct Times {
     std::size_t failures = 0;
 };
 
-Times measure(
-    const discrete::Example& example, const GridSize& size, bool in_blocks, int seeds
-) {
+Times measure(const discrete::Example& example, const GridSize& size, bool in_blocks, int seeds) {
     discrete::Parameters parameters;
     parameters.size = size;
     if (!in_blocks) {
@@ -72,7 +70,10 @@ Times measure(
 }
 
 void print(
-    const char* name, const discrete::Example& example, const GridSize& size, bool in_blocks,
+    const char* name,
+    const discrete::Example& example,
+    const GridSize& size,
+    bool in_blocks,
     int seeds
 ) {
     const Times times = measure(example, size, in_blocks, seeds);

@@ -1,14 +1,14 @@
-#include <cstdlib>
-#include <set>
-#include <string>
-
-#include <gtest/gtest.h>
-
 #include "solver/core/random.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+#include <string>
 
 namespace modelsynth::discrete {
 namespace {
@@ -65,9 +65,8 @@ Case make_case(std::uint64_t seed) {
         }
     }
     if (below(3) == 0) {
-        const Label cell = made.example.cells[random.below(
-            static_cast<std::uint32_t>(made.example.cells.size())
-        )];
+        const Label cell =
+            made.example.cells[random.below(static_cast<std::uint32_t>(made.example.cells.size()))];
         parameters.constraints.push_back(
             {ConstraintKind::kFixed,
              {made.example.pieces[cell].name},
@@ -130,7 +129,8 @@ TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
             ASSERT_TRUE(
                 model.error().code == ErrorCode::kContradiction ||
                 model.error().code == ErrorCode::kGaveUp
-            ) << "seed " << seed;
+            ) << "seed "
+              << seed;
             ASSERT_FALSE(model.error().message.empty());
             continue;
         }
@@ -138,7 +138,8 @@ TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
         ASSERT_EQ(
             find_inconsistency(wanted.example, model->size, model->labels, wanted.periodic),
             std::nullopt
-        ) << "seed " << seed;
+        ) << "seed "
+          << seed;
         expect_wishes_held(wanted, *model, seed);
         if (HasFatalFailure()) {
             return;

@@ -213,6 +213,7 @@ def test_deleted_jobs_stay_forgotten_after_a_crash(make_server):
     assert server.get("/v1/jobs").json()["items"] == []
 
 
+@pytest.mark.xfail(strict=True, reason="no checkpoint is kept yet: a preview is there again once the job's solving has come past its first block")
 def test_the_preview_of_a_begun_job_that_waits_again_after_a_crash_is_still_there(make_server):
     server = make_server(workers=1)
     job = submit(server, ENDLESS_JOB)["id"]

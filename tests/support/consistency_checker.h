@@ -1,14 +1,14 @@
 #pragma once
 
+#include "solver/core/grid.h"
+#include "solver/core/label_set.h"
+#include "solver/discrete/example.h"
+
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <tuple>
-
-#include "solver/core/grid.h"
-#include "solver/core/label_set.h"
-#include "solver/discrete/example.h"
 
 namespace modelsynth::testing {
 
@@ -48,7 +48,9 @@ inline std::optional<std::string> find_inconsistency(
         }
     };
     visit_pairs(
-        example.size, example.cells, {false, false, false},
+        example.size,
+        example.cells,
+        {false, false, false},
         [&allowed](const Pair& pair, int, int, int) { allowed.insert(pair); }
     );
     for (const auto& pair : example.adjacency) {

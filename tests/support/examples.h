@@ -1,13 +1,13 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "solver/core/observer.h"
 #include "solver/core/random.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/synthesis.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace modelsynth::testing {
 
@@ -46,12 +46,13 @@ inline discrete::Example make_example(
 
 // Ground (a) below, air (b) above, and a pillar (c, capped by d) that stands on the ground.
 inline discrete::Example make_pillars() {
-    // Three floors of 3 x 3.
+    // Four floors of 3 x 3; the last is air, so that the cap has something above it.
     return make_example(
-        {3, 3, 3},
+        {3, 4, 3},
         {0, 0, 0, 0, 0, 0, 0, 0, 0,  //
          1, 1, 1, 1, 2, 1, 1, 1, 1,  //
-         1, 1, 1, 1, 3, 1, 1, 1, 1},
+         1, 1, 1, 1, 3, 1, 1, 1, 1,  //
+         1, 1, 1, 1, 1, 1, 1, 1, 1},
         4
     );
 }

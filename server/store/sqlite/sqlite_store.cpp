@@ -254,9 +254,7 @@ Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(
     }
 }
 
-SqliteStore::SqliteStore(
-    const std::filesystem::path& directory, int lock, UnixMillis retention_ms
-)
+SqliteStore::SqliteStore(const std::filesystem::path& directory, int lock, UnixMillis retention_ms)
     : path_((directory / "modelsynth.db").string()),
       lock_(lock),
       retention_ms_(retention_ms),

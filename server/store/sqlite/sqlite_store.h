@@ -80,9 +80,7 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     class Listener;
     using ListenerMap = std::multimap<std::string, Listener*>;
 
-    SqliteStore(
-        const std::filesystem::path& directory, int lock, proto::UnixMillis retention_ms
-    );
+    SqliteStore(const std::filesystem::path& directory, int lock, proto::UnixMillis retention_ms);
 
     void prepare_schema(Database& database);
     void recover(Database& database);

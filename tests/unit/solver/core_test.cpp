@@ -1,12 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <array>
-#include <map>
-#include <numeric>
-#include <set>
-
-#include <gtest/gtest.h>
-
 #include "solver/core/block_schedule.h"
 #include "solver/core/block_search.h"
 #include "solver/core/catalog.h"
@@ -14,6 +5,15 @@
 #include "solver/core/label_weights.h"
 #include "solver/core/random.h"
 #include "solver/core/site_domains.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
 
 namespace modelsynth {
 namespace {
@@ -44,6 +44,7 @@ class GraphTopology {
         Site to;
         RelationId relation;
     };
+
     std::vector<std::vector<Arc>> arcs_;
 };
 
@@ -75,9 +76,7 @@ TEST(Philox, MatchesThePublishedVectors) {
         (std::array<std::uint32_t, 4>{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8})
     );
     EXPECT_EQ(
-        philox4x32(
-            {0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}
-        ),
+        philox4x32({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}),
         (std::array<std::uint32_t, 4>{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd})
     );
 }
@@ -85,7 +84,11 @@ TEST(Philox, MatchesThePublishedVectors) {
 TEST(RandomStream, DependsOnEveryPartOfItsKey) {
     std::set<std::uint32_t> firsts;
     for (const RandomKey& key :
-         {RandomKey{1, 0, 0, 0}, {2, 0, 0, 0}, {1ULL << 32, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0},
+         {RandomKey{1, 0, 0, 0},
+          {2, 0, 0, 0},
+          {1ULL << 32, 0, 0, 0},
+          {1, 1, 0, 0},
+          {1, 0, 1, 0},
           {1, 0, 0, 1}}) {
         firsts.insert(RandomStream(key).next());
     }
@@ -239,8 +242,14 @@ TEST(BlockSearch, ColoursAGeneralGraph) {
     std::iota(scan.begin(), scan.end(), Site{0});
     for (const Order order : {Order::kScan, Order::kMinEntropy, Order::kRandom}) {
         const BlockResult result = modify_block(
-            part, relations, domains, weights, std::span<Label>(labels), {50, order, scan},
-            {3, 0, 0, 0}, {}
+            part,
+            relations,
+            domains,
+            weights,
+            std::span<Label>(labels),
+            {50, order, scan},
+            {3, 0, 0, 0},
+            {}
         );
         ASSERT_EQ(result.outcome, BlockOutcome::kAccepted);
         for (Site site = 0; site < 10; ++site) {
@@ -265,8 +274,14 @@ TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
     std::vector<Label> labels(3, 1);
     const std::vector<Site> scan = {0, 1, 2};
     const BlockResult result = modify_block(
-        WholeGraph(graph), relations, domains, LabelWeights(given), std::span<Label>(labels),
-        {5, Order::kScan, scan}, {}, {}
+        WholeGraph(graph),
+        relations,
+        domains,
+        LabelWeights(given),
+        std::span<Label>(labels),
+        {5, Order::kScan, scan},
+        {},
+        {}
     );
     EXPECT_EQ(result.outcome, BlockOutcome::kImpossible);
     EXPECT_EQ(labels, (std::vector<Label>{1, 1, 1}));  // as it was
@@ -287,8 +302,14 @@ TEST(BlockSearch, StopsWhenAskedAndLeavesTheModel) {
     const std::array<double, 3> given = {1, 1, 1};
     std::vector<Label> labels(size.cell_count(), 2);
     const BlockResult result = modify_block(
-        part, relations, domains, LabelWeights(given), std::span<Label>(labels),
-        {1, Order::kRandom, {}}, {}, stop.get_token()
+        part,
+        relations,
+        domains,
+        LabelWeights(given),
+        std::span<Label>(labels),
+        {1, Order::kRandom, {}},
+        {},
+        stop.get_token()
     );
     EXPECT_EQ(result.outcome, BlockOutcome::kStopped);
     EXPECT_TRUE(std::all_of(labels.begin(), labels.end(), [](Label l) { return l == 2; }));
@@ -318,12 +339,17 @@ class NaiveCatalog {
             changed = false;
             for (Site site = 0; site < sets_.size(); ++site) {
                 grid_.for_each_arc(site, [&](Site to, RelationId relation) {
-                    changed = std::erase_if(sets_[to], [&](Label b) {
-                        return std::none_of(
-                            sets_[site].begin(), sets_[site].end(),
-                            [&](Label a) { return relations_.allows(relation, a, b); }
-                        );
-                    }) > 0 || changed;
+                    changed = std::erase_if(
+                                  sets_[to],
+                                  [&](Label b) {
+                                      return std::none_of(
+                                          sets_[site].begin(),
+                                          sets_[site].end(),
+                                          [&](Label a) { return relations_.allows(relation, a, b); }
+                                      );
+                                  }
+                              ) > 0 ||
+                              changed;
                 });
             }
         }
@@ -373,10 +399,12 @@ void compare_with_naive(std::size_t label_count, std::uint64_t seed) {
     if (!consistent) {
         return;
     }
+
     struct Level {
         typename Catalog<GridTopology, kWords>::Mark mark;
         std::vector<std::set<Label>> sets;
     };
+
     std::vector<Level> levels;
     for (int step = 0; step < 40; ++step) {
         const std::uint32_t action = random.below(4);

@@ -1,13 +1,13 @@
-#include <algorithm>
-
-#include <gtest/gtest.h>
-
 #include "solver/discrete/problem.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
 #include "solver/examples/built_in.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace modelsynth::discrete {
 namespace {
@@ -21,6 +21,15 @@ Parameters sized(const Example& example, const GridSize& size) {
     Parameters parameters;
     parameters.size = size;
     return fill_defaults(parameters, example);
+}
+
+// Pillars whose bottom is ground and whose top is air, so that there is something to change.
+Example make_grounded_pillars() {
+    Example example = make_pillars();
+    example.empty = 1;
+    example.boundary[static_cast<std::size_t>(Direction::kDown)] = {BoundaryKind::kPieces, {"a"}};
+    example.boundary[static_cast<std::size_t>(Direction::kUp)] = {BoundaryKind::kPieces, {"b"}};
+    return example;
 }
 
 TEST(Transitions, AreThePairsOfTheExampleAndNoOthers) {
@@ -53,8 +62,7 @@ TEST(Transitions, ListedPairsAreAdded) {
 }
 
 TEST(Synthesis, ReportsBlocksInOrderAndEveryStateIsConsistent) {
-    Example example = make_pillars();
-    example.boundary[static_cast<std::size_t>(Direction::kDown)] = {BoundaryKind::kExample, {}};
+    const Example example = make_grounded_pillars();
     RecordingObserver observer;
     const auto model = synthesise(example, sized(example, {17, 6, 13}), 5, observer, {});
     ASSERT_TRUE(model) << model.error().message;
@@ -66,9 +74,7 @@ TEST(Synthesis, ReportsBlocksInOrderAndEveryStateIsConsistent) {
     }
     EXPECT_EQ(observer.models.back(), model->labels);
     EXPECT_GT(model->stats.changed, 0.0);
-    EXPECT_EQ(
-        model->stats.blocks_accepted + model->stats.blocks_reverted, observer.reports.size()
-    );
+    EXPECT_EQ(model->stats.blocks_accepted + model->stats.blocks_reverted, observer.reports.size());
 }
 
 TEST(Synthesis, BlocksChangeOnlyTheirRegion) {
@@ -120,7 +126,7 @@ TEST(Synthesis, HoldsBoundariesFixedCellsAndForbiddenPieces) {
 }
 
 TEST(Synthesis, WeightsMoveTheSharesAndZeroRemoves) {
-    const Example example = make_pillars();
+    const Example example = make_grounded_pillars();
     const auto count_pillars = [&](double weight) {
         Parameters parameters = sized(example, {20, 4, 20});
         parameters.weights = WeightList{{"c", weight}};
@@ -162,8 +168,7 @@ TEST(Synthesis, NamesTheSidesOfAnImpossibleBoundary) {
     parameters.boundary[static_cast<std::size_t>(Direction::kNorth)] =
         SideBoundary{BoundaryKind::kPieces, {"b"}};
     RecordingObserver observer;
-    const auto model =
-        synthesise(example, fill_defaults(parameters, example), 0, observer, {});
+    const auto model = synthesise(example, fill_defaults(parameters, example), 0, observer, {});
     ASSERT_FALSE(model);
     EXPECT_EQ(model.error().code, ErrorCode::kContradiction);
     EXPECT_NE(model.error().message.find("bottom"), std::string::npos) << model.error().message;
@@ -174,6 +179,7 @@ TEST(Synthesis, NamesTheSidesOfAnImpossibleBoundary) {
 TEST(Synthesis, StopsWhenAsked) {
     const Example example = make_pillars();
     std::stop_source stop;
+
     class StopAfterThree final : public Observer {
       public:
         explicit StopAfterThree(std::stop_source& source) : source_(source) {}
@@ -191,6 +197,7 @@ TEST(Synthesis, StopsWhenAsked) {
       private:
         std::stop_source& source_;
     } observer(stop);
+
     const auto model =
         synthesise(example, sized(example, {60, 4, 60}), 0, observer, stop.get_token());
     ASSERT_FALSE(model);
@@ -216,8 +223,12 @@ TEST(FindFaults, NamesEveryUnknownPieceWithItsPlace) {
     EXPECT_EQ(
         pointers,
         (std::vector<std::string>{
-            "/boundary/east", "/boundary/top/1", "/weights/a~1b~0", "/constraints/0/pieces/0",
-            "/constraints/0/box", "/constraints/0/cells/0"})
+            "/boundary/east",
+            "/boundary/top/1",
+            "/weights/a~1b~0",
+            "/constraints/0/pieces/0",
+            "/constraints/0/box",
+            "/constraints/0/cells/0"})
     );
 }
 
@@ -268,8 +279,7 @@ TEST(Scene, PlacesEveryDrawnCellInTheMiddleOfItsFloor) {
         piece.mesh = 0;
     }
     example.pieces[1].mesh.reset();
-    const Scene scene =
-        make_scene(example, example.size, example.cells, Box::whole(example.size));
+    const Scene scene = make_scene(example, example.size, example.cells, Box::whole(example.size));
     std::size_t instances = 0;
     for (const SceneGroup& group : scene.groups) {
         instances += group.instances.size();
