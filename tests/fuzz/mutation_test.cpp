@@ -1,0 +1,184 @@
+// Every parser on texts that were valid once: bytes changed, cut, doubled, moved. Nothing may
+// crash, hang or be read out of bounds (the sanitizers watch), and what is accepted must be whole.
+// MODELSYNTH_FUZZ_ROUNDS asks for a longer run.
+
+#include "proto/example_codec.h"
+#include "proto/frame.h"
+#include "proto/job_request.h"
+#include "server/http/head_check.h"
+#include "server/http/message.h"
+#include "solver/core/random.h"
+#include "solver/discrete/scene.h"
+#include "solver/examples/built_in.h"
+#include "solver/mesh/glb_reader.h"
+#include "solver/mesh/glb_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace modelsynth {
+namespace {
+
+std::uint64_t rounds() {
+    const char* asked = std::getenv("MODELSYNTH_FUZZ_ROUNDS");
+    return asked == nullptr ? 3000 : std::strtoull(asked, nullptr, 10);
+}
+
+std::string mutate(std::string text, RandomStream& random) {
+    static const std::vector<std::string> kPieces = {
+        "{",
+        "}",
+        "[",
+        "]",
+        "\"",
+        ":",
+        ",",
+        "null",
+        "-1",
+        "1e400",
+        "18446744073709551616",
+        "true",
+        "\\u0000",
+        "\xFF",
+        std::string(1, '\0'),
+        "%00",
+        "..",
+        "\r\n",
+        "0.5",
+        "[[[[[[[["};
+    const auto below = [&random](std::size_t bound) {
+        return static_cast<std::size_t>(random.below(static_cast<std::uint32_t>(bound)));
+    };
+    for (std::size_t i = 0; i <= below(4) && !text.empty(); ++i) {
+        const std::size_t at = below(text.size());
+        const std::size_t length = 1 + below(std::min<std::size_t>(16, text.size() - at));
+        switch (below(5)) {
+            case 0:
+                text[at] = static_cast<char>(random.next());
+                break;
+            case 1:
+                text.erase(at, length);
+                break;
+            case 2:
+                text.insert(at, text.substr(below(text.size()), length));
+                break;
+            case 3:
+                text.replace(at, length, kPieces[below(kPieces.size())]);
+                break;
+            default:
+                text.resize(at);
+                break;
+        }
+    }
+    return text;
+}
+
+void fuzz(
+    const std::string& seed_text,
+    std::uint32_t purpose,
+    const std::function<bool(const std::string&)>& accepts
+) {
+    std::size_t accepted = 0;
+    for (std::uint64_t round = 0; round < rounds(); ++round) {
+        RandomStream random({round, 0, 0, purpose});
+        accepted += accepts(mutate(seed_text, random)) ? 1U : 0U;
+    }
+    EXPECT_TRUE(accepts(seed_text));
+    EXPECT_LT(accepted, rounds());  // mutations that never matter test nothing
+}
+
+constexpr const char* kExample = R"({"kind":"discrete","name":"line","cell":[1,1,1],
+"pieces":[{"name":"empty"},{"name":"ground"},{"name":"wall","weight":2,"turns":1}],"size":[2,2,2],
+"cells":[1,1,1,1,0,2,0,0],"empty":"empty","adjacency":{"x":[["wall","wall"]]},
+"boundary":{"bottom":"example","top":["empty"],"north":"periodic","south":"periodic"}})";
+
+TEST(Fuzz, JobRequests) {
+    const std::string request =
+        R"({"solver":"discrete","example":)" + std::string(kExample) +
+        R"(,"seed":7,"parameters":{"size":[4,3,2],"blocks":{"size":[2,2,2],"overlap":0.5},)"
+        R"("boundary":{"top":"empty"},"order":"scan","weights":{"wall":3},)"
+        R"("constraints":[{"kind":"fixed","pieces":["wall"],"box":{"min":[0,1,0],"max":[1,2,1]}}]},)"
+        R"("priority":1,"deadline":2.5,"tags":{"a":"b"}})";
+    const auto none = [](const std::string&) { return std::optional<Example>(); };
+    fuzz(request, 1, [&none](const std::string& text) {
+        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        if (!parsed) {
+            EXPECT_FALSE(proto::to_json(parsed.error()).empty());
+            return false;
+        }
+        // What is accepted is echoed in a form that is accepted again and says the same.
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        EXPECT_TRUE(again && again->echo == parsed->echo) << text;
+        return true;
+    });
+}
+
+TEST(Fuzz, Examples) {
+    fuzz(kExample, 2, [](const std::string& text) {
+        const auto parsed = proto::parse_example(text, {});
+        if (parsed) {
+            EXPECT_EQ(parsed->example->cells.size(), parsed->example->size.cell_count());
+            EXPECT_TRUE(write_glb(discrete::make_piece_sheet(*parsed->example)));
+        }
+        return parsed.has_value();
+    });
+}
+
+TEST(Fuzz, BinaryGltf) {
+    auto castle = *examples::built_in().front();
+    castle.pieces.resize(4);
+    GlbOptions options;
+    options.named_nodes = true;
+    const std::string glb = *write_glb(discrete::make_piece_sheet(castle), options);
+    fuzz(glb, 3, [](const std::string& text) {
+        const auto kit = read_glb(std::as_bytes(std::span(text)));
+        for (std::size_t i = 0; kit && i < kit->meshes.size(); ++i) {
+            for (const Primitive& primitive : kit->meshes[i].primitives) {
+                EXPECT_LT(primitive.material, kit->materials.size());
+                for (const std::uint32_t index : primitive.indices) {
+                    EXPECT_LT(index, primitive.positions.size());
+                }
+            }
+        }
+        return kit.has_value();
+    });
+}
+
+TEST(Fuzz, Frames) {
+    const std::string frame = proto::encode_frame(
+        {proto::FrameKind::kLabels,
+         5,
+         {{0, 0, 0}, {1, 2, 1}},
+         proto::encode_labels(std::vector<Label>{1, 2})}
+    );
+    fuzz(frame, 4, [](const std::string& text) {
+        const auto decoded = proto::decode_frame(text);
+        if (decoded) {
+            EXPECT_EQ(proto::encode_frame(*decoded), text);
+        }
+        return decoded.has_value();
+    });
+}
+
+TEST(Fuzz, RequestTargetsAndHeads) {
+    const std::string head =
+        "GET /v1/jobs/01abc/events?after=3&partial=labels%20x HTTP/1.1\r\nHost: x\r\n\r\n";
+    fuzz(head, 5, [](const std::string& text) {
+        server::Request request;
+        const std::size_t space = text.find(' ');
+        const std::string target =
+            space == std::string::npos
+                ? text
+                : text.substr(space + 1, text.find(' ', space + 1) - space - 1);
+        const bool fine = server::parse_target(target, request);
+        return fine && !server::check_raw_head(text);
+    });
+}
+
+}  // namespace
+}  // namespace modelsynth

@@ -1,0 +1,204 @@
+#include "proto/example_codec.h"
+#include "proto/frame.h"
+#include "proto/job.h"
+#include "proto/job_request.h"
+#include "proto/problem.h"
+#include "proto/timestamp.h"
+#include "solver/examples/built_in.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace modelsynth::proto {
+namespace {
+
+constexpr const char* kLine = R"({
+  "kind": "discrete", "name": "line", "cell": [1, 1, 1],
+  "pieces": [ { "name": "empty" }, { "name": "ground" }, { "name": "wall", "weight": 2 } ],
+  "size": [4, 2, 3], "cells": [ 1,1,1,1, 1,1,1,1, 1,1,1,1,  0,2,0,0, 0,2,0,0, 0,0,0,0 ],
+  "empty": "empty",
+  "boundary": { "bottom": "example", "top": "empty" }
+})";
+
+std::optional<Example> find_built_in(const std::string& id) {
+    for (const auto& example : examples::built_in()) {
+        if (example->name == id) {
+            return example;
+        }
+    }
+    return std::nullopt;
+}
+
+Parsed<JobRequest> parse(const std::string& body) {
+    return parse_job_request(body, {}, find_built_in, 11);
+}
+
+std::vector<std::string> pointers(const Problem& problem) {
+    std::vector<std::string> found;
+    for (const Fault& fault : problem.errors) {
+        found.push_back(fault.pointer);
+    }
+    return found;
+}
+
+TEST(JobRequest, NeedsOnlySolverAndExample) {
+    const auto request = parse(R"({"solver": "discrete", "example": "castle"})");
+    ASSERT_TRUE(request) << to_json(request.error());
+    EXPECT_EQ(request->task.seed, 11U);
+    EXPECT_EQ(model_size(request->task.parameters), (GridSize{40, 10, 40}));
+}
+
+TEST(JobRequest, ItsEchoGivesTheSameRequestAgain) {
+    const auto first = parse(R"({"solver": "discrete", "example": "city", "priority": -3,
+        "parameters": {"size": [20, 10, 21], "order": "random", "weights": {"air": 2.5},
+        "boundary": {"top": "air", "north": "free"}, "blocks": {"overlap": 0.25},
+        "constraints": [{"kind": "fixed", "pieces": ["air"], "cells": [[1, 9, 1]]}]},
+        "deadline": 2.5, "tags": {"level": "3"}})");
+    ASSERT_TRUE(first) << to_json(first.error());
+    const auto second = parse(first->echo);
+    ASSERT_TRUE(second) << to_json(second.error());
+    EXPECT_EQ(first->echo, second->echo);
+}
+
+TEST(JobRequest, FindsEveryFaultAtOnce) {
+    const auto request = parse(R"({"solver": "x", "example": "castle", "seed": 9007199254740992,
+        "parameters": {"size": [0, 8.5, "a"], "no": 1, "order": "up",
+        "boundary": {"top": 3, "left": "air"}}, "priority": 11, "tags": {"a/b": 1}})");
+    ASSERT_FALSE(request);
+    EXPECT_EQ(request.error().type, "/problems/invalid-request");
+    EXPECT_EQ(
+        pointers(request.error()),
+        (std::vector<std::string>{
+            "/solver",
+            "/seed",
+            "/parameters/size/0",
+            "/parameters/size/1",
+            "/parameters/size/2",
+            "/parameters/boundary/top",
+            "/parameters/boundary/left",
+            "/parameters/order",
+            "/parameters/no",
+            "/priority",
+            "/tags/a~1b"})
+    );
+}
+
+TEST(JobRequest, WholeNumbersMayBeWrittenWithAPointAndNothingIsRounded) {
+    EXPECT_TRUE(parse(R"({"solver": "discrete", "example": "castle", "seed": 7.0})"));
+    for (const char* seed : {"7.5", "-1", "true", "\"7\"", "1e300", "9007199254740992", "null"}) {
+        EXPECT_FALSE(parse(
+            std::string(R"({"solver": "discrete", "example": "castle", "seed": )") + seed + "}"
+        )) << seed;
+    }
+}
+
+TEST(JobRequest, LimitsHoldAtTheirEdge) {
+    const auto sized = [](const std::string& size) {
+        return parse(
+            R"({"solver": "discrete", "example": "castle", "parameters": {"size": )" + size + "}}"
+        );
+    };
+    EXPECT_TRUE(sized("[4096, 1, 976]"));
+    const auto large = sized("[4096, 1, 977]");  // 4 001 792 cells
+    ASSERT_FALSE(large);
+    EXPECT_EQ(large.error().type, "/problems/too-large");
+    EXPECT_EQ(pointers(large.error()), std::vector<std::string>{"/parameters/size"});
+    EXPECT_FALSE(sized("[4097, 1, 1]"));
+}
+
+TEST(Json, RefusesDepthDuplicatesAndTextAfterANul) {
+    EXPECT_EQ(parse(std::string(100'000, '[')).error().type, "/problems/malformed-json");
+    EXPECT_EQ(
+        parse(R"({"solver": "discrete", "solver": "discrete"})").error().type,
+        "/problems/malformed-json"
+    );
+    EXPECT_EQ(parse(std::string("{}") + '\0' + "x").error().type, "/problems/malformed-json");
+    const auto broken = parse(R"({"solver": })");
+    ASSERT_FALSE(broken);
+    EXPECT_NE(broken.error().detail.find("at byte 11"), std::string::npos) << broken.error().detail;
+}
+
+TEST(ExampleCodec, ReadsTheContractsExample) {
+    const auto upload = parse_example(kLine, {});
+    ASSERT_TRUE(upload) << to_json(upload.error());
+    const discrete::Example& example = *upload->example;
+    EXPECT_EQ(example.pieces.size(), 3U);
+    EXPECT_EQ(example.pieces[2].weight, 2);
+    EXPECT_EQ(example.empty, Label{0});
+    EXPECT_FALSE(example.pieces[0].mesh);  // drawn as nothing
+    EXPECT_TRUE(example.pieces[1].mesh);   // a box of its own
+    EXPECT_EQ(parse_example(upload->canonical, {})->canonical, upload->canonical);
+}
+
+TEST(ExampleCodec, NamesWhatIsWrong) {
+    const auto upload = parse_example(
+        R"({"kind": "discrete", "name": "n", "pieces": [{"name": "a"}, {"name": "a"}, {}],
+            "size": [2, 1, 1], "cells": [0, 3], "empty": "x",
+            "boundary": {"east": "periodic", "top": ["a", "y"]}})",
+        {}
+    );
+    ASSERT_FALSE(upload);
+    EXPECT_EQ(
+        pointers(upload.error()),
+        (std::vector<std::string>{
+            "/pieces/1/name",
+            "/pieces/2/name",
+            "/cells/1",
+            "/empty",
+            "/boundary/top/1",
+            "/boundary/east"})
+    );
+}
+
+TEST(Frame, SurvivesTheWireAndRefusesWhatIsNotWhole) {
+    const Frame frame = {
+        FrameKind::kLabels,
+        0x1122334455667788,
+        {{-1, 2, 3}, {4, 5, 600}},
+        encode_labels(std::vector<Label>{1, 513, kNoLabel})};
+    const std::string bytes = encode_frame(frame);
+    ASSERT_EQ(bytes.size(), kFrameHeaderBytes + 6);
+    EXPECT_EQ(bytes.substr(0, 6), std::string("MSYF\x01\x01"));
+    const auto decoded = decode_frame(bytes);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->seq, frame.seq);
+    EXPECT_EQ(decoded->region, frame.region);
+    EXPECT_EQ(decode_labels(decoded->payload), (std::vector<Label>{1, 513, kNoLabel}));
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+        EXPECT_FALSE(decode_frame(bytes.substr(0, length)));
+    }
+    EXPECT_FALSE(decode_frame(bytes + "x"));
+}
+
+TEST(Events, AreAsTheContractWritesThem) {
+    EXPECT_EQ(
+        event_json(3, "block", 1714566600250, R"({"index":0})"),
+        R"({"seq":3,"type":"block","time":"2024-05-01T12:30:00.250Z","index":0})"
+    );
+    EXPECT_EQ(
+        event_json(4, "cancelled", 0, "{}"),
+        R"({"seq":4,"type":"cancelled","time":"1970-01-01T00:00:00.000Z"})"
+    );
+    EXPECT_EQ(
+        block_fields({11, 49, {{0, 0, 5}, {10, 10, 15}}, true, 2, {}}),
+        R"({"index":11,"region":{"min":[0,0,5],"max":[10,10,15]},"outcome":"accepted",)"
+        R"("attempts":2,"blocks_done":12,"blocks_total":49,"fraction":0.244898})"
+    );
+    EXPECT_EQ(to_rfc3339(-1), "1969-12-31T23:59:59.999Z");
+}
+
+TEST(Problems, AreAsTheStandardWritesThem) {
+    Problem problem = make_problem("invalid-request", "no\xFF");
+    problem.errors = {{"/a", "b"}};
+    EXPECT_EQ(
+        to_json(problem),
+        "{\"type\":\"/problems/invalid-request\",\"title\":\"The request cannot be done\","
+        "\"status\":422,\"detail\":\"no\xEF\xBF\xBD\",\"errors\":[{\"pointer\":\"/a\","
+        "\"detail\":\"b\"}]}"
+    );
+}
+
+}  // namespace
+}  // namespace modelsynth::proto
