@@ -26,7 +26,7 @@ build() {  # PRESET TARGET...
   local preset=$1
   shift
   step "build $preset"
-  must cmake --preset "$preset" >"$results/$preset.configure.log" 2>&1 || { cat "$results/$preset.configure.log"; return 1; }
+  must cmake --preset "$preset" -DMODELSYNTH_TESTS=ON >"$results/$preset.configure.log" 2>&1 || { cat "$results/$preset.configure.log"; return 1; }
   must cmake --build --preset "$preset" --target "$@" >"$results/$preset.build.log" 2>&1 \
     || { tail -n 60 "$results/$preset.build.log"; return 1; }
 }
