@@ -72,6 +72,7 @@ build release all && {
   service release tests/layout tests/service
 }
 if ! $quick; then
+  export MODELSYNTH_SANITIZED=1
   build asan "${programs[@]}" modelsynthd modelsynth && {
     export MODELSYNTH_CASES=150
     unit asan "${programs[@]}"

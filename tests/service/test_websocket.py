@@ -2,6 +2,7 @@
 bad clients and slow ones."""
 
 import json
+import os
 import pathlib
 import shutil
 import struct
@@ -473,8 +474,10 @@ def test_a_client_that_stops_reading_still_gets_the_end_and_can_build_the_model(
                 assert event == log[event["seq"] - 1]
         assert replayed(messages, size) == labels
         assert len(events) < len(log) - 1, "the clients were never slow"
-    # 4 clients that read everything from memory would need 80 MB.
-    assert peak - before < 60, f"{before} MiB grew to {peak} MiB"
+    # 4 clients that read everything from memory would need 80 MB. A sanitizer holds back what was
+    # freed, so there the size of the process says nothing.
+    if "MODELSYNTH_SANITIZED" not in os.environ:
+        assert peak - before < 60, f"{before} MiB grew to {peak} MiB"
 
 
 @pytest.fixture(scope="module")
