@@ -9,8 +9,8 @@ packages=(
   libcli11-dev libexpected-dev libsqlite3-dev libssl-dev
 )
 if [ "${1:-build}" = test ]; then
-  packages+=(libgtest-dev libbenchmark-dev python3 python3-pytest python3-jsonschema
-             python3-websockets clang-format)
+  packages+=(libgtest-dev python3 python3-pytest python3-jsonschema
+             clang-format)
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 

@@ -41,7 +41,6 @@ const char* artifact_name(GlbProfile profile) {
     return "nodes.glb";
 }
 
-// Jobs often have no label yet at some cells; those count as not made.
 bool has_expired(const Job& job) { return job.expires && *job.expires < now_millis(); }
 
 }  // namespace
@@ -78,6 +77,7 @@ void JobService::work(const std::stop_token& stop) {
             const std::lock_guard lock(mutex_);
             seen = submissions_;
         }
+        expire_now_and_then();
         const auto claim = jobs_.claim(now_millis());
         if (claim && *claim) {
             run_claim(context, **claim);
@@ -85,6 +85,15 @@ void JobService::work(const std::stop_token& stop) {
         }
         std::unique_lock lock(mutex_);
         queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen; });
+    }
+}
+
+void JobService::expire_now_and_then() {
+    constexpr proto::UnixMillis kInterval = 60'000;
+    const proto::UnixMillis now = now_millis();
+    proto::UnixMillis last = last_expiry_;
+    if (now - last >= kInterval && last_expiry_.compare_exchange_strong(last, now)) {
+        jobs_.expire(now);
     }
 }
 

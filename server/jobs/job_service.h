@@ -103,6 +103,8 @@ class JobService {
     };
 
     void work(const std::stop_token& stop);
+    // Removes what has expired, once a minute whichever worker comes first.
+    void expire_now_and_then();
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
 
@@ -115,6 +117,7 @@ class JobService {
     LiveJobs live_;
     RunningJobs running_;
     std::atomic<bool> draining_ = false;
+    std::atomic<proto::UnixMillis> last_expiry_ = 0;
     std::mutex mutex_;
     std::condition_variable_any queued_;
     std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news

@@ -4,6 +4,7 @@ its log goes on where it was, and the model is the one an undisturbed server mak
 import hashlib
 import os
 import subprocess
+import time
 
 import pytest
 
@@ -331,3 +332,21 @@ def test_jobs_that_were_cancelled_expire_like_others(make_server):
         job = server.get(f"/v1/jobs/{job_id}").json()
         assert job["state"] == "cancelled"
         assert job["expires"] is not None
+
+
+def test_what_has_expired_is_gone_with_its_files_after_the_next_start(make_server):
+    server = make_server("--retention-hours", "0.001")  # 3.6 seconds
+    job = server.wait(server.submit()["id"])
+    model = f"/v1/jobs/{job['id']}/model.glb"
+    assert server.get(model).status == 200
+    until = time.monotonic() + 30
+    while server.get(model).status == 200 and time.monotonic() < until:
+        time.sleep(0.1)
+    assert server.get(model).status == 410
+    server.stop()
+    server.start()
+    while list(server.data.glob("artifacts/*/*/*")) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not list(server.data.glob("artifacts/*/*/*"))
+    assert server.get(model).status == 410
+    assert server.get(f"/v1/jobs/{job['id']}").json()["state"] == "succeeded"
