@@ -7,10 +7,12 @@
 #include "solver/core/site_domains.h"
 #include "solver/core/topology.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <span>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 namespace modelsynth {
@@ -37,6 +39,50 @@ struct BlockOptions {
 // What RandomKey::purpose says of the streams drawn here.
 inline constexpr std::uint32_t kPurposeSearch = 1;
 
+// What propagation makes of parts when nothing outside them is known: the domains alone. Many
+// blocks of a model have the same one - all that touch the same sides - and it takes longer than
+// the rest of their knowledge. Kept from block to block, it changes no result, only the time.
+// Requires: one problem (relations and domains) for all calls. Not thread-safe.
+template <class T>
+class BlockBases {
+  public:
+    struct Base {
+        T topology;
+        std::vector<std::uint16_t> domains;
+        std::vector<Word> sets;
+    };
+
+    // The state for such a part; null when none is kept.
+    [[nodiscard]] const Base* find(const T& topology, std::span<const std::uint16_t> domains)
+        const {
+        const auto found = std::find_if(bases_.begin(), bases_.end(), [&](const Base& base) {
+            return std::equal(
+                       domains.begin(), domains.end(), base.domains.begin(), base.domains.end()
+                   ) &&
+                   base.topology == topology;
+        });
+        return found == bases_.end() ? nullptr : &*found;
+    }
+
+    // Forgets the oldest ones when memory would grow beyond the limit.
+    void keep(Base base) {
+        words_ += base.sets.size();
+        bases_.push_back(std::move(base));
+        while (words_ > kWordsMax || bases_.size() > kBasesMax) {
+            words_ -= bases_.front().sets.size();
+            bases_.erase(bases_.begin());
+        }
+    }
+
+  private:
+    // A block may touch each side of a model or not: 27 kinds in space. A few more for fixed cells.
+    static constexpr std::size_t kBasesMax = 32;
+    static constexpr std::size_t kWordsMax = std::size_t{1} << 20;
+
+    std::vector<Base> bases_;
+    std::size_t words_ = 0;  // of all sets together
+};
+
 // Runs searches over one part of a model while the rest stands still: the inner half of
 // Algorithm 3.4. The knowledge that the surroundings force on the part is computed once; every
 // attempt starts from it.
@@ -48,12 +94,14 @@ class BlockSearch {
         const Part& part,
         const Relations& relations,
         const SiteDomains& domains,
-        const LabelWeights& weights
+        const LabelWeights& weights,
+        BlockBases<typename Part::Inner>* bases
     )
         : part_(part),
           relations_(relations),
           domains_(domains),
           weights_(weights),
+          bases_(bases),
           catalog_(part.inner(), relations) {}
 
     // Makes the part anew, or leaves `model` as it was.
@@ -105,8 +153,37 @@ class BlockSearch {
   private:
     // Everything the sites may be by themselves, less what the labels outside forbid.
     Propagation surroundings(std::span<const Label> model, const std::stop_token& stop) {
+        Propagation propagation = base(stop);
+        if (propagation != Propagation::kConsistent) {
+            return propagation;
+        }
+        bool consistent = true;
+        part_.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
+            const Label label = model[outside];
+            if (consistent && label != kNoLabel) {
+                const RelationId inward = relations_.reverse(relation);
+                consistent = catalog_.narrow(inside, relations_.row(inward, label).data());
+            }
+        });
+        propagation = consistent ? catalog_.propagate(stop) : Propagation::kContradiction;
+        impossible_ = catalog_.emptied_site();
+        return propagation;
+    }
+
+    // What the sites may be by themselves.
+    Propagation base(const std::stop_token& stop) {
+        std::vector<std::uint16_t> numbers(catalog_.site_count());
+        for (std::size_t site = 0; site < numbers.size(); ++site) {
+            numbers[site] = domains_.number(part_.global(static_cast<Site>(site)));
+        }
+        if (bases_ != nullptr) {
+            if (const auto* known = bases_->find(part_.inner(), numbers)) {
+                catalog_.restore(known->sets);
+                return Propagation::kConsistent;
+            }
+        }
         std::vector<Word> sets(catalog_.all_labels().size());
-        for (std::size_t site = 0; site < catalog_.site_count(); ++site) {
+        for (std::size_t site = 0; site < numbers.size(); ++site) {
             const std::span<const Word> own = domains_.words(part_.global(static_cast<Site>(site)));
             if (is_empty(own)) {
                 impossible_ = static_cast<Site>(site);
@@ -119,18 +196,13 @@ class BlockSearch {
             );
         }
         catalog_.restore(sets);
-        bool consistent = true;
-        part_.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
-            const Label label = model[outside];
-            if (consistent && label != kNoLabel) {
-                const RelationId inward = relations_.reverse(relation);
-                consistent = catalog_.narrow(inside, relations_.row(inward, label).data());
-            }
-        });
         catalog_.enqueue_all();
-        const Propagation propagation =
-            consistent ? catalog_.propagate(stop) : Propagation::kContradiction;
+        const Propagation propagation = catalog_.propagate(stop);
         impossible_ = catalog_.emptied_site();
+        if (bases_ != nullptr && propagation == Propagation::kConsistent) {
+            std::copy(catalog_.all_labels().begin(), catalog_.all_labels().end(), sets.begin());
+            bases_->keep({part_.inner(), std::move(numbers), std::move(sets)});
+        }
         return propagation;
     }
 
@@ -176,11 +248,13 @@ class BlockSearch {
     const Relations& relations_;
     const SiteDomains& domains_;
     const LabelWeights& weights_;
+    BlockBases<typename Part::Inner>* bases_;  // null: none are kept
     Catalog<typename Part::Inner, kWords> catalog_;
     Site impossible_ = 0;  // where surroundings() found a contradiction
 };
 
-// One call of BlockSearch with the set width chosen at run time.
+// One call of BlockSearch with the set width chosen at run time. `bases` saves work when many
+// blocks of one problem are searched.
 template <TopologyPart Part>
 [[nodiscard]] BlockResult modify_block(
     const Part& part,
@@ -190,10 +264,11 @@ template <TopologyPart Part>
     std::span<Label> model,
     const BlockOptions& options,
     const RandomKey& key,
-    const std::stop_token& stop
+    const std::stop_token& stop,
+    BlockBases<typename Part::Inner>* bases = nullptr
 ) {
     const auto with_width = [&]<std::size_t kWords>() {
-        BlockSearch<Part, kWords> block(part, relations, domains, weights);
+        BlockSearch<Part, kWords> block(part, relations, domains, weights, bases);
         return block.modify(model, options, key, stop);
     };
     switch (relations.words()) {
@@ -201,6 +276,10 @@ template <TopologyPart Part>
             return with_width.template operator()<1>();
         case 2:
             return with_width.template operator()<2>();
+        case 3:
+            return with_width.template operator()<3>();
+        case 4:
+            return with_width.template operator()<4>();
         default:
             return with_width.template operator()<0>();
     }

@@ -31,6 +31,7 @@ template <Topology T, std::size_t kWords>
 class Catalog {
   public:
     using Mark = std::size_t;
+    using Labels = std::span<const Word, kWords == 0 ? std::dynamic_extent : kWords>;
 
     // Requires: topology and relations outlive the catalog.
     Catalog(const T& topology, const Relations& relations)
@@ -54,8 +55,8 @@ class Catalog {
 
     [[nodiscard]] std::size_t words() const { return kWords == 0 ? words_ : kWords; }
 
-    [[nodiscard]] std::span<const Word> labels(Site site) const {
-        return {sets_.data() + site * words(), words()};
+    [[nodiscard]] Labels labels(Site site) const {
+        return Labels(sets_.data() + site * words(), words());
     }
 
     [[nodiscard]] std::span<const Word> all_labels() const { return sets_; }
@@ -170,19 +171,15 @@ class Catalog {
     [[nodiscard]] Mark mark() {
         ++marks_;
         ++stamp_;
-        return trail_sites_.size();
+        return trail_length_;
     }
 
     void undo(Mark mark) {
-        while (trail_sites_.size() > mark) {
-            const Site site = trail_sites_.back();
-            trail_sites_.pop_back();
-            std::copy(
-                trail_words_.end() - static_cast<std::ptrdiff_t>(words()),
-                trail_words_.end(),
-                sets_.begin() + static_cast<std::ptrdiff_t>(site * words())
-            );
-            trail_words_.resize(trail_words_.size() - words());
+        while (trail_length_ > mark) {
+            --trail_length_;
+            const Site site = trail_sites_[trail_length_];
+            const Word* set = trail_words_.data() + trail_length_ * words();
+            std::copy(set, set + words(), sets_.data() + site * words());
             note_change(site);
         }
         forget_queue();
@@ -203,30 +200,38 @@ class Catalog {
   private:
     // The width of support_ when the compiler may know it: then the sums below stay in registers.
     static constexpr std::size_t kSupportWords = T::kRelationCount * kWords;
+    static constexpr std::size_t kTrailStart = 64;
 
     // support_[r] = the labels that some label left at the site allows along relation r. Sites
     // often come one after the other with the same set; then it is there already.
     void collect_support(Site site) {
-        const std::span<const Word> set = labels(site);
-        if (std::equal(set.begin(), set.end(), supported_.begin())) {
+        const Word* set = sets_.data() + site * words();
+        Word* known = supported_.data();
+        Word difference = 0;
+        for (std::size_t word = 0; word < words(); ++word) {
+            difference |= set[word] ^ known[word];
+            known[word] = set[word];
+        }
+        if (difference == 0) {
             return;
         }
-        std::copy(set.begin(), set.end(), supported_.begin());
         if constexpr (kSupportWords > 0) {
             std::array<Word, kSupportWords> sum = {};
-            for_each_label(set, [&](Label label) {
-                const Word* row = relations_.row_data(label);
+            for_each_nibble(labels(site), [&](std::size_t group, std::size_t members) {
+                const Word* rows = relations_.union_data(group, members, kSupportWords);
                 for (std::size_t word = 0; word < kSupportWords; ++word) {
-                    sum[word] |= row[word];
+                    sum[word] |= rows[word];
                 }
             });
             std::copy(sum.begin(), sum.end(), support_.begin());
         } else {
             std::fill(support_.begin(), support_.end(), Word{0});
-            for_each_label(set, [&](Label label) {
-                const Word* row = relations_.row_data(label);
-                for (std::size_t word = 0; word < support_.size(); ++word) {
-                    support_[word] |= row[word];
+            Word* sum = support_.data();
+            const std::size_t width = support_.size();
+            for_each_nibble(labels(site), [&](std::size_t group, std::size_t members) {
+                const Word* rows = relations_.union_data(group, members, width);
+                for (std::size_t word = 0; word < width; ++word) {
+                    sum[word] |= rows[word];
                 }
             });
         }
@@ -234,29 +239,34 @@ class Catalog {
 
     void save(Site site) {
         note_change(site);
-        if (marks_ == 0 || saved_[site] == stamp_) {
+        if (marks_ == 0 || saved_.data()[site] == stamp_) {
             return;
         }
-        saved_[site] = stamp_;
-        trail_sites_.push_back(site);
+        saved_.data()[site] = stamp_;
+        if (trail_length_ == trail_sites_.size()) {
+            trail_sites_.resize(2 * trail_length_ + kTrailStart);
+            trail_words_.resize(trail_sites_.size() * words());
+        }
+        trail_sites_.data()[trail_length_] = site;
         const Word* set = sets_.data() + site * words();
-        trail_words_.insert(trail_words_.end(), set, set + words());
+        std::copy(set, set + words(), trail_words_.data() + trail_length_ * words());
+        ++trail_length_;
     }
 
     // The queue is a ring: a site is in it once at most, so it never overflows.
     void enqueue(Site site) {
-        if (queued_[site] == 0) {
-            queued_[site] = 1;
+        if (queued_.data()[site] == 0) {
+            queued_.data()[site] = 1;
             const std::size_t end = queue_head_ + queue_length_++;
-            queue_[end < queue_.size() ? end : end - queue_.size()] = site;
+            queue_.data()[end < queue_.size() ? end : end - queue_.size()] = site;
         }
     }
 
     Site dequeue() {
-        const Site site = queue_[queue_head_];
+        const Site site = queue_.data()[queue_head_];
         queue_head_ = queue_head_ + 1 < queue_.size() ? queue_head_ + 1 : 0;
         --queue_length_;
-        queued_[site] = 0;
+        queued_.data()[site] = 0;
         return site;
     }
 
@@ -276,15 +286,13 @@ class Catalog {
         check(marks_ > 0, "a mark was released twice");
         ++stamp_;  // what an outer mark has not saved yet is saved anew
         if (--marks_ == 0) {
-            trail_sites_.clear();
-            trail_words_.clear();
+            trail_length_ = 0;
         }
     }
 
     void forget_trail() {
         marks_ = 0;
-        trail_sites_.clear();
-        trail_words_.clear();
+        trail_length_ = 0;
     }
 
     const T& topology_;
@@ -295,8 +303,9 @@ class Catalog {
     std::size_t queue_head_ = 0;
     std::size_t queue_length_ = 0;
     std::vector<std::uint8_t> queued_;
-    std::vector<Site> trail_sites_;
+    std::vector<Site> trail_sites_;  // the first trail_length_ are in use; so of their words
     std::vector<Word> trail_words_;
+    std::size_t trail_length_ = 0;
     std::vector<std::uint64_t> saved_;  // the stamp under which the site is on the trail
     std::uint64_t stamp_ = 0;
     std::size_t marks_ = 0;

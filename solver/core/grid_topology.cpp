@@ -70,7 +70,8 @@ GridTopology::GridTopology(const GridSize& size, Periodic periodic) : size_(size
                 wraps |= 1U << direction;
             }
         }
-        arcs_[site] = static_cast<std::uint8_t>(arcs);
+        const bool inside = arcs == (1U << kDirectionCount) - 1 && wraps == 0;
+        arcs_[site] = static_cast<std::uint8_t>(inside ? kInside : arcs);
         if (!wraps_.empty()) {
             wraps_[site] = static_cast<std::uint8_t>(wraps);
         }

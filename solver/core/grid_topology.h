@@ -31,32 +31,42 @@ class GridTopology {
 
     [[nodiscard]] const GridSize& size() const { return size_; }
 
+    friend bool operator==(const GridTopology& a, const GridTopology& b) {
+        return a.size_ == b.size_ && a.wraps_ == b.wraps_;  // the rest follows from these
+    }
+
     template <class Visit>
     void for_each_arc(Site site, Visit visit) const {
-        const std::uint8_t arcs = arcs_[site];
+        // The hot loop of every search: most cells are inside, with all six neighbours a step away.
+        const unsigned arcs = arcs_.data()[site];
+        if (arcs == kInside) {
+            for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
+                visit(neighbour(site, steps_[direction]), static_cast<RelationId>(direction));
+            }
+            return;
+        }
+        const unsigned wraps = wraps_.empty() ? 0 : wraps_.data()[site];
         for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
             if ((arcs >> direction & 1) != 0) {
-                visit(
-                    static_cast<Site>(static_cast<std::int64_t>(site) + step(site, direction)),
-                    static_cast<RelationId>(direction)
-                );
+                const bool wrapped = (wraps >> direction & 1) != 0;
+                const std::int64_t step = (wrapped ? wrapped_steps_ : steps_)[direction];
+                visit(neighbour(site, step), static_cast<RelationId>(direction));
             }
         }
     }
 
   private:
-    // The distance to the neighbour: one step on, or a whole row back where the axis is closed.
-    [[nodiscard]] std::int64_t step(Site site, std::size_t direction) const {
-        if (wraps_.empty() || (wraps_[site] >> direction & 1) == 0) {
-            return steps_[direction];
-        }
-        return wrapped_steps_[direction];
+    // All six neighbours, and none of them across a seam.
+    static constexpr unsigned kInside = 0xFF;
+
+    static Site neighbour(Site site, std::int64_t step) {
+        return static_cast<Site>(static_cast<std::int64_t>(site) + step);
     }
 
     GridSize size_;
     std::array<std::int64_t, kDirectionCount> steps_ = {};
     std::array<std::int64_t, kDirectionCount> wrapped_steps_ = {};
-    std::vector<std::uint8_t> arcs_;   // bit d: there is a neighbour in direction d
+    std::vector<std::uint8_t> arcs_;   // bit d: there is a neighbour in direction d; or kInside
     std::vector<std::uint8_t> wraps_;  // bit d: that neighbour is across the seam; empty: nowhere
 };
 

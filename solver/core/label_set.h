@@ -17,7 +17,8 @@ inline constexpr std::size_t kLabelCountMax = 65535;
 inline constexpr Label kNoLabel = 65535;
 
 // Sets of labels are rows of 64-bit words, label l at bit l % 64 of word l / 64. Bits past the
-// last label are zero. The catalog keeps its sets in one flat array and works on such rows.
+// last label are zero. The catalog keeps its sets in one flat array and works on such rows. The
+// functions on them take any range of words, spans of a width known at compile time above all.
 using Word = std::uint64_t;
 inline constexpr std::size_t kWordBits = 64;
 
@@ -26,8 +27,8 @@ constexpr std::size_t words_for(std::size_t label_count) {
 }
 
 // Calls visit(Label) for every label of the set, in rising order.
-template <class Visit>
-constexpr void for_each_label(std::span<const Word> set, Visit visit) {
+template <class Set, class Visit>
+constexpr void for_each_label(const Set& set, Visit visit) {
     for (std::size_t word = 0; word < set.size(); ++word) {
         for (Word bits = set[word]; bits != 0; bits &= bits - 1) {
             visit(static_cast<Label>(
@@ -37,7 +38,22 @@ constexpr void for_each_label(std::span<const Word> set, Visit visit) {
     }
 }
 
-constexpr std::size_t count_labels(std::span<const Word> set) {
+// Calls visit(group, members) for every aligned group of four labels that has any in the set:
+// label 4 * group + i at bit i of members. In rising order.
+template <class Set, class Visit>
+constexpr void for_each_nibble(const Set& set, Visit visit) {
+    constexpr std::size_t kNibbles = kWordBits / 4;
+    for (std::size_t word = 0; word < set.size(); ++word) {
+        for (Word bits = set[word]; bits != 0;) {
+            const auto nibble = static_cast<std::size_t>(std::countr_zero(bits)) / 4;
+            visit(word * kNibbles + nibble, static_cast<std::size_t>(bits >> nibble * 4 & 15));
+            bits &= ~(Word{15} << nibble * 4);
+        }
+    }
+}
+
+template <class Set>
+constexpr std::size_t count_labels(const Set& set) {
     std::size_t count = 0;
     for (const Word word : set) {
         count += static_cast<std::size_t>(std::popcount(word));
@@ -46,7 +62,8 @@ constexpr std::size_t count_labels(std::span<const Word> set) {
 }
 
 // Whether the set has at least two labels; cheaper than counting.
-constexpr bool has_several(std::span<const Word> set) {
+template <class Set>
+constexpr bool has_several(const Set& set) {
     bool any = false;
     for (const Word word : set) {
         if (word == 0) {
@@ -60,7 +77,8 @@ constexpr bool has_several(std::span<const Word> set) {
     return false;
 }
 
-constexpr bool is_empty(std::span<const Word> set) {
+template <class Set>
+constexpr bool is_empty(const Set& set) {
     for (const Word word : set) {
         if (word != 0) {
             return false;

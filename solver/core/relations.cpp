@@ -10,7 +10,10 @@ Relations::Relations(std::size_t label_count, std::vector<RelationId> reverse)
     : label_count_(label_count),
       words_(words_for(label_count)),
       reverse_(std::move(reverse)),
-      rows_(label_count * reverse_.size() * words_) {
+      unions_(
+          ((label_count + kGroupLabels - 1) / kGroupLabels << kGroupLabels) * reverse_.size() *
+          words_
+      ) {
     check(label_count <= kLabelCountMax, "more labels than a label number can hold");
     for (std::size_t relation = 0; relation < reverse_.size(); ++relation) {
         check(
@@ -22,9 +25,18 @@ Relations::Relations(std::size_t label_count, std::vector<RelationId> reverse)
 
 void Relations::allow(RelationId relation, Label a, Label b) {
     check(a < label_count_ && b < label_count_, "a label outside the relation");
+    if (allows(relation, a, b)) {
+        return;
+    }
     const auto set = [this](RelationId r, Label from, Label to) {
-        rows_[(from * reverse_.size() + r) * words_ + to / kWordBits] |= Word{1}
-                                                                         << (to % kWordBits);
+        const std::size_t group = from / kGroupLabels;
+        const std::size_t member = std::size_t{1} << (from % kGroupLabels);
+        for (std::size_t members = 0; members < (1U << kGroupLabels); ++members) {
+            if ((members & member) != 0) {
+                const std::size_t row = (group << kGroupLabels | members) * reverse_.size() + r;
+                unions_[row * words_ + to / kWordBits] |= Word{1} << (to % kWordBits);
+            }
+        }
     };
     set(relation, a, b);
     set(reverse_[relation], b, a);

@@ -25,6 +25,9 @@ class SiteDomains {
 
     [[nodiscard]] std::span<const Word> words(Site site) const { return at(site).words(); }
 
+    // Equal for two sites exactly when their sets are.
+    [[nodiscard]] std::uint16_t number(Site site) const { return set_of_site_[site]; }
+
     [[nodiscard]] std::size_t site_count() const { return set_of_site_.size(); }
 
   private:

@@ -28,9 +28,10 @@ concept Topology = requires(const T& topology, Site site, void (*visit)(Site, Re
 // 0, the arcs among them, and the arcs that lead out of it.
 //
 // global(site) is the site's number in the whole; for_each_outward_arc(visit) calls
-// visit(Site inside, Site outside_in_the_whole, RelationId seen_from_inside).
+// visit(Site inside, Site outside_in_the_whole, RelationId seen_from_inside). Two inner topologies
+// are equal when they have the same sites and arcs.
 template <class T>
-concept TopologyPart = Topology<typename T::Inner> &&
+concept TopologyPart = Topology<typename T::Inner> && std::equality_comparable<typename T::Inner> &&
     requires(const T& part, Site site, void (*visit)(Site, Site, RelationId)) {
     { part.inner() } -> std::convertible_to<const typename T::Inner&>;
     { part.global(site) } -> std::convertible_to<Site>;

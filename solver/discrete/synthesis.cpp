@@ -43,9 +43,10 @@ class Run {
         }
         labels_ = *initial;
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
+        BlockBases<GridTopology> bases;
         observer_.on_start(blocks_total_, labels_);
         for (const Box& block : *schedule) {
-            const BlockResult result = modify(block, blocks.attempts);
+            const BlockResult result = modify(block, blocks.attempts, &bases);
             if (result.outcome == BlockOutcome::kStopped) {
                 return tl::unexpected(cancelled());
             }
@@ -67,7 +68,7 @@ class Run {
         blocks_total_ = 1;
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
-        const BlockResult result = modify(whole, kWholeAttempts);
+        const BlockResult result = modify(whole, kWholeAttempts, nullptr);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -89,7 +90,7 @@ class Run {
     }
 
   private:
-    BlockResult modify(const Box& block, std::uint32_t attempts) {
+    BlockResult modify(const Box& block, std::uint32_t attempts, BlockBases<GridTopology>* bases) {
         if (stop_.stop_requested()) {
             return {BlockOutcome::kStopped, 0, 0};
         }
@@ -107,7 +108,8 @@ class Run {
             std::span<Label>(labels_),
             {attempts, parameters_.order, scan_},
             {seed_, block_index_, 0, 0},
-            stop_
+            stop_,
+            bases
         );
     }
 

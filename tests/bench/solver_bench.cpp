@@ -1,9 +1,9 @@
 // Times discrete synthesis and prints a table. Medians over seeds, one thread.
 //
-//   solver_bench [--data DIR] [--seeds N]
+//   solver_bench [--data DIR] [--seeds N] [--only NAME]
 //
 // DIR holds label grids in the example format (castle.json, ...); built-in examples are timed in
-// any case.
+// any case. NAME is that of an example as printed in the table.
 
 #include "proto/example_codec.h"
 #include "solver/discrete/synthesis.h"
@@ -111,6 +111,7 @@ std::optional<discrete::Example> load(const std::filesystem::path& path) {
 
 int main(int argc, char** argv) {
     std::string data;
+    std::string only;
     int seeds = 20;
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string option = argv[i];
@@ -118,6 +119,8 @@ int main(int argc, char** argv) {
             data = argv[i + 1];
         } else if (option == "--seeds") {
             seeds = std::max(1, std::atoi(argv[i + 1]));
+        } else if (option == "--only") {
+            only = argv[i + 1];
         }
     }
     std::printf(
@@ -127,6 +130,9 @@ int main(int argc, char** argv) {
         "--------|--------|\n"
     );
     for (const auto& example : modelsynth::examples::built_in()) {
+        if (!only.empty() && only != example->name) {
+            continue;
+        }
         const std::int32_t y = example->default_size.y;
         print(example->name.c_str(), *example, {40, y, 40}, true, seeds);
         print(example->name.c_str(), *example, {40, y, 40}, false, std::min(seeds, 5));
@@ -134,14 +140,14 @@ int main(int argc, char** argv) {
     }
     for (const char* name : {"castle", "city", "canyon", "escheresque", "simple"}) {
         const auto path = std::filesystem::path(data) / (std::string(name) + ".json");
-        if (data.empty() || !std::filesystem::exists(path)) {
+        const std::string label = std::string(name) + ".json";
+        if (data.empty() || !std::filesystem::exists(path) || (!only.empty() && only != label)) {
             continue;
         }
         const auto example = load(path);
         if (!example) {
             return 1;
         }
-        const std::string label = std::string(name) + ".json";
         print(label.c_str(), *example, {40, 10, 40}, true, seeds);
         print(label.c_str(), *example, {40, 10, 40}, false, std::min(seeds, 5));
     }

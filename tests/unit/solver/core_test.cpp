@@ -39,10 +39,14 @@ class GraphTopology {
         }
     }
 
+    friend bool operator==(const GraphTopology&, const GraphTopology&) = default;
+
   private:
     struct Arc {
         Site to;
         RelationId relation;
+
+        friend bool operator==(const Arc&, const Arc&) = default;
     };
 
     std::vector<std::vector<Arc>> arcs_;
@@ -285,6 +289,77 @@ TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
     );
     EXPECT_EQ(result.outcome, BlockOutcome::kImpossible);
     EXPECT_EQ(labels, (std::vector<Label>{1, 1, 1}));  // as it was
+}
+
+TEST(BlockSearch, KnowledgeKeptFromBlockToBlockChangesNoResult) {
+    const GridSize size = {14, 3, 9};
+    RandomStream random({11, 0, 0, 1});
+    Relations relations(9, {1, 0, 3, 2, 5, 4});
+    for (RelationId r = 0; r < 6; r += 2) {
+        for (int pairs = 0; pairs < 40; ++pairs) {
+            relations.allow(
+                r, static_cast<Label>(random.below(9)), static_cast<Label>(random.below(9))
+            );
+        }
+        for (Label label = 0; label < 9; ++label) {
+            relations.allow(r, label, label);
+        }
+    }
+    SiteDomains domains(size.cell_count(), LabelSet::all(9));
+    LabelSet some(9);
+    for (Label label = 0; label < 6; ++label) {
+        some.insert(label);
+    }
+    for (Site site = 0; site < 30; ++site) {
+        domains.narrow(site, some);
+    }
+    const std::vector<double> given(9, 1);
+    const LabelWeights weights(given);
+    std::vector<Label> with(size.cell_count(), 3);
+    std::vector<Label> without = with;
+    BlockBases<GridTopology> bases;
+    // 4x3x5 and 5x3x4 have as many sites each: only the topology tells them apart.
+    const std::vector<Box> blocks = {
+        {{0, 0, 0}, {4, 3, 5}},
+        {{5, 0, 4}, {9, 3, 9}},
+        {{5, 0, 5}, {10, 3, 9}},
+        {{9, 0, 0}, {14, 3, 4}},
+        {{0, 0, 0}, {4, 3, 5}}};
+    for (std::uint32_t index = 0; index < blocks.size(); ++index) {
+        const GridPart part(size, {}, blocks[index]);
+        std::vector<Site> scan(blocks[index].size().cell_count());
+        std::iota(scan.begin(), scan.end(), Site{0});
+        const BlockOptions options = {4, Order::kScan, scan};
+        const RandomKey key = {5, index, 0, 0};
+        const auto search = [&](std::vector<Label>& labels, BlockBases<GridTopology>* kept) {
+            return modify_block(
+                part, relations, domains, weights, std::span<Label>(labels), options, key, {}, kept
+            );
+        };
+        EXPECT_EQ(search(with, &bases).outcome, BlockOutcome::kAccepted) << index;
+        EXPECT_EQ(search(without, nullptr).outcome, BlockOutcome::kAccepted) << index;
+        EXPECT_EQ(with, without) << index;
+    }
+    EXPECT_NE(with, std::vector<Label>(size.cell_count(), 3));
+}
+
+TEST(LabelSet, NibblesHoldTheLabelsOfTheSet) {
+    LabelSet set(131);
+    std::set<std::size_t> expected;
+    for (const std::size_t label : {0U, 3U, 4U, 63U, 64U, 70U, 130U}) {
+        set.insert(static_cast<Label>(label));
+        expected.insert(label);
+    }
+    std::set<std::size_t> found;
+    for_each_nibble(set.words(), [&](std::size_t group, std::size_t members) {
+        EXPECT_NE(members, 0U);
+        for (std::size_t i = 0; i < 4; ++i) {
+            if ((members >> i & 1) != 0) {
+                EXPECT_TRUE(found.insert(4 * group + i).second);
+            }
+        }
+    });
+    EXPECT_EQ(found, expected);
 }
 
 TEST(BlockSearch, StopsWhenAskedAndLeavesTheModel) {
