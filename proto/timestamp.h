@@ -8,6 +8,9 @@ namespace modelsynth::proto {
 // Milliseconds since 1970-01-01T00:00:00Z, the form in which times are kept.
 using UnixMillis = std::int64_t;
 
+// The time now.
+[[nodiscard]] UnixMillis now_millis();
+
 // RFC 3339 in UTC with milliseconds: 2024-05-01T12:30:00.250Z.
 [[nodiscard]] std::string to_rfc3339(UnixMillis time);
 

@@ -29,13 +29,6 @@ void append_base32(std::string& text, std::uint64_t value, int digits) {
 
 }  // namespace
 
-proto::UnixMillis now_millis() {
-    return std::chrono::duration_cast<std::chrono::milliseconds>(
-               std::chrono::system_clock::now().time_since_epoch()
-    )
-        .count();
-}
-
 std::string make_job_id(proto::UnixMillis now) {
     static std::mutex mutex;
     static proto::UnixMillis last = 0;

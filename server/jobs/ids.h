@@ -7,8 +7,6 @@
 
 namespace modelsynth::server {
 
-[[nodiscard]] proto::UnixMillis now_millis();
-
 // A new job id: 26 characters, safe in a path, sorting by time of creation, unguessable enough
 // not to be met by chance. Thread-safe.
 [[nodiscard]] std::string make_job_id(proto::UnixMillis now);

@@ -41,7 +41,7 @@ const char* artifact_name(GlbProfile profile) {
     return "nodes.glb";
 }
 
-bool has_expired(const Job& job) { return job.expires && *job.expires < now_millis(); }
+bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void JobService::work(const std::stop_token& stop) {
             seen = submissions_;
         }
         expire_now_and_then();
-        const auto claim = jobs_.claim(now_millis());
+        const auto claim = jobs_.claim(proto::now_millis());
         if (claim && *claim) {
             run_claim(context, **claim);
             continue;
@@ -90,7 +90,7 @@ void JobService::work(const std::stop_token& stop) {
 
 void JobService::expire_now_and_then() {
     constexpr proto::UnixMillis kInterval = 60'000;
-    const proto::UnixMillis now = now_millis();
+    const proto::UnixMillis now = proto::now_millis();
     proto::UnixMillis last = last_expiry_;
     if (now - last >= kInterval && last_expiry_.compare_exchange_strong(last, now)) {
         jobs_.expire(now);
@@ -130,7 +130,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
         return tl::unexpected(std::move(request.error()));
     }
     NewJob job;
-    job.created = now_millis();
+    job.created = proto::now_millis();
     job.id = make_job_id(job.created);
     job.solver = request->solver;
     job.seed = request->task.seed;
@@ -154,7 +154,7 @@ Parsed<Job> JobService::find(const std::string& id) { return parsed(jobs_.find(i
 Parsed<JobPage> JobService::list(const JobQuery& query) { return parsed(jobs_.list(query)); }
 
 Parsed<Job> JobService::cancel(const std::string& id) {
-    auto job = jobs_.cancel(id, now_millis());
+    auto job = jobs_.cancel(id, proto::now_millis());
     if (job && job->state == JobState::kRunning) {
         running_.stop(id, StopReason::kCancelled);
         // The worker may have let go between the two calls; then nobody would take this back.
@@ -200,15 +200,26 @@ Parsed<Job> JobService::find_finished(const std::string& id) {
     return job;
 }
 
+Stored<std::string> JobService::load_labels(const std::string& id) {
+    const auto digest = jobs_.artifact(id, "labels");
+    if (digest) {
+        return artifacts_.load(*digest);
+    }
+    auto checkpoint = jobs_.checkpoint(id);
+    if (checkpoint && *checkpoint) {
+        return std::move((*checkpoint)->labels);
+    }
+    return tl::unexpected(checkpoint ? digest.error() : checkpoint.error());
+}
+
 Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
-    const auto digest = jobs_.artifact(job.id, "labels");
-    if (!digest) {
-        return tl::unexpected(problem_of(digest.error()));
-    }
-    const auto payload = artifacts_.load(*digest);
-    if (!payload) {
-        return tl::unexpected(problem_of(payload.error()));
-    }
+    const auto labels = load_labels(job.id);
+    return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
+}
+
+Parsed<JobService::LoadedModel> JobService::load_model(
+    const Job& job, const std::string& encoded_labels
+) {
     auto request = proto::parse_job_request(
         job.request,
         config_.limits,
@@ -224,7 +235,7 @@ Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }
-    auto labels = proto::decode_labels(*payload);
+    auto labels = proto::decode_labels(encoded_labels);
     const GridSize size = model_size(request->task.parameters);
     if (!labels || labels->size() != size.cell_count()) {
         return tl::unexpected(make_problem("internal", "the job's labels are damaged"));
@@ -283,6 +294,20 @@ std::optional<JobService::WholeState> JobService::whole_state(
     return WholeState{loaded->example, {job->head - 1, std::move(loaded->model), true}};
 }
 
+Parsed<JobService::LoadedModel> JobService::newest_model(const Job& job) {
+    if (const auto live = live_.find(job.id)) {
+        auto state = live->state();
+        if (state.any_block) {
+            return LoadedModel{live->example(), std::move(state.model)};
+        }
+    }
+    const auto labels = load_labels(job.id);
+    if (!labels && labels.error().code == StoreErrorCode::kNotFound) {
+        return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
+    }
+    return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
+}
+
 Parsed<std::string> JobService::preview(const std::string& id) {
     const auto job = find(id);
     if (!job) {
@@ -291,14 +316,11 @@ Parsed<std::string> JobService::preview(const std::string& id) {
     if (has_expired(*job)) {
         return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
     }
-    const auto live = live_.find(id);
-    const auto whole = live ? std::optional(WholeState{live->example(), live->state()})
-                            : whole_state(id, job->head - 1);
-    if (!whole || !whole->state.any_block) {
-        return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
+    const auto model = newest_model(*job);
+    if (!model) {
+        return tl::unexpected(model.error());
     }
-    const Model& model = whole->state.model;
-    auto glb = write_glb(make_scene(whole->example, model, Box::whole(model.size)));
+    auto glb = write_glb(make_scene(model->example, model->model, Box::whole(model->model.size)));
     if (!glb) {
         return tl::unexpected(proto::problem_of(glb.error()));
     }

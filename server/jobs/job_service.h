@@ -105,7 +105,14 @@ class JobService {
     void work(const std::stop_token& stop);
     // Removes what has expired, once a minute whichever worker comes first.
     void expire_now_and_then();
+    // As far as the store tells it; see newest_model() for jobs that run.
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(const proto::Job& job);
+    [[nodiscard]] proto::Parsed<LoadedModel> load_model(
+        const proto::Job& job, const std::string& encoded_labels
+    );
+    [[nodiscard]] Stored<std::string> load_labels(const std::string& id);
+    // Fails: not-finished before the first accepted block.
+    [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
 
     JobServiceConfig config_;

@@ -21,12 +21,13 @@ LiveJob::LiveJob(Example example, GridSize size) : example_(std::move(example)) 
     base_.labels.assign(size.cell_count(), kNoLabel);
 }
 
-void LiveJob::start(std::uint64_t seq, std::span<const Label> initial) {
+void LiveJob::start(std::uint64_t seq, std::span<const Label> model, bool any_block) {
     const std::lock_guard lock(mutex_);
     base_seq_ = seq;
     head_seq_ = seq;
-    if (!initial.empty()) {
-        base_.labels.assign(initial.begin(), initial.end());
+    any_block_ = any_block;
+    if (!model.empty()) {
+        base_.labels.assign(model.begin(), model.end());
     }
 }
 

@@ -39,8 +39,9 @@ class LiveJob {
 
     [[nodiscard]] const GridSize& size() const { return base_.size; }
 
-    // The initial model stands; kNoLabel everywhere where there is none.
-    void start(std::uint64_t seq, std::span<const Label> initial);
+    // The initial model stands, or that of a checkpoint with accepted blocks; kNoLabel everywhere
+    // where there is none.
+    void start(std::uint64_t seq, std::span<const Label> model, bool any_block);
 
     // An accepted block; seqs rise. Patches beyond kPatchBytesMax become part of the older state.
     void apply(std::shared_ptr<const Patch> patch);

@@ -2,11 +2,11 @@
 
 #include "proto/frame.h"
 #include "proto/job_request.h"
-#include "server/jobs/ids.h"
+#include "proto/timestamp.h"
+#include "server/jobs/logging_observer.h"
 #include "server/jobs/store_problem.h"
 #include "solver/mesh/glb_writer.h"
 
-#include <atomic>
 #include <chrono>
 #include <exception>
 #include <optional>
@@ -18,187 +18,6 @@ namespace modelsynth::server {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-struct LoggedBlock {
-    std::uint64_t seq = 0;
-    std::string fields;
-};
-
-// Turns what the solver tells into events and patches.
-class LoggingObserver final : public Observer {
-  public:
-    LoggingObserver(
-        const WorkerContext& context,
-        const Claim& claim,
-        RunningJobs::Entry& running,
-        std::shared_ptr<LiveJob> live,
-        std::vector<LoggedBlock> logged
-    )
-        : context_(context),
-          claim_(claim),
-          running_(running),
-          live_(std::move(live)),
-          logged_(std::move(logged)) {
-        start_->first_logged = logged_.empty() ? 0 : logged_.front().seq;
-    }
-
-    void on_start(std::uint32_t blocks_total, std::span<const Label> initial) override {
-        blocks_total_ = blocks_total;
-        const bool resumed = !claim_.solver_version.empty();
-        auto labels = std::make_shared<std::vector<Label>>(initial.begin(), initial.end());
-        append(
-            {"started", proto::started_fields(blocks_total, resumed), now_millis()},
-            static_cast<std::uint32_t>(logged_.size()),
-            [start = start_, live = live_, labels](std::uint64_t seq) {
-                // What is solved again after a restart belongs to the seqs that it had.
-                live->start(start->first_logged > 0 ? start->first_logged - 1 : seq, *labels);
-                start->seq = seq;
-            }
-        );
-    }
-
-    void on_block(const BlockReport& report) override {
-        std::string fields = proto::block_fields(report);
-        std::shared_ptr<Patch> patch = report.accepted ? make_patch(report) : nullptr;
-        if (report.index < logged_.size()) {
-            replay(logged_[report.index], fields, std::move(patch));
-            return;
-        }
-        append(
-            {"block", std::move(fields), now_millis()},
-            report.index + 1,
-            [live = live_, patch](std::uint64_t seq) { show(*live, patch, seq); }
-        );
-    }
-
-    // How long this claim has been solving, and the ones before it.
-    [[nodiscard]] double solved_seconds() const {
-        const std::chrono::duration<double> own = Clock::now() - begun_;
-        return claim_.solved_seconds + own.count();
-    }
-
-    [[nodiscard]] bool diverged() const { return diverged_; }
-
-  private:
-    static void show(LiveJob& live, const std::shared_ptr<Patch>& patch, std::uint64_t seq) {
-        if (patch == nullptr) {
-            live.pass(seq);
-            return;
-        }
-        patch->seq = seq;
-        live.apply(patch);
-    }
-
-    [[nodiscard]] std::shared_ptr<Patch> make_patch(const BlockReport& report) const {
-        auto patch = std::make_shared<Patch>();
-        patch->region = report.region;
-        patch->labels.reserve(report.region.size().cell_count());
-        const GridSize size = live_size_;
-        for_each_cell(report.region, [&](const Cell& cell) {
-            patch->labels.push_back(report.model[size.index(cell)]);
-        });
-        return patch;
-    }
-
-    // A block that the log holds: shown again, and checked against what was logged.
-    void replay(
-        const LoggedBlock& logged, const std::string& fields, std::shared_ptr<Patch> patch
-    ) {
-        if (logged.fields != fields) {
-            diverged_ = true;
-            running_.request_stop(StopReason::kLost);
-            return;
-        }
-        // In order with the blocks still to be appended, so through the store's queue as well.
-        const bool last = &logged == &logged_.back();
-        append_nothing(
-            [live = live_, patch = std::move(patch), seq = logged.seq, last, start = start_] {
-                show(*live, patch, seq);
-                if (last) {
-                    live->pass(start->seq);
-                }
-            }
-        );
-    }
-
-    void append(
-        NewEvent event, std::uint32_t blocks_done, std::function<void(std::uint64_t)> then
-    ) {
-        std::vector<NewEvent> events;
-        events.push_back(std::move(event));
-        post(std::move(events), blocks_done, std::move(then));
-    }
-
-    void append_nothing(std::function<void()> then) {
-        post(
-            {},
-            static_cast<std::uint32_t>(logged_.size()),
-            [then = std::move(then)](std::uint64_t) { then(); }
-        );
-    }
-
-    void post(
-        std::vector<NewEvent> events,
-        std::uint32_t blocks_done,
-        std::function<void(std::uint64_t)> then
-    ) {
-        context_.jobs.append(
-            claim_.lease,
-            std::move(events),
-            {blocks_done, blocks_total_, solved_seconds(), kSolverVersion},
-            [&running = context_.running,
-             id = claim_.lease.job_id,
-             then = std::move(then)](const Stored<std::uint64_t>& seq) {
-                if (seq) {
-                    then(*seq);
-                } else {
-                    running.stop(id, StopReason::kLost);
-                }
-            }
-        );
-    }
-
-    const WorkerContext& context_;
-    const Claim& claim_;
-    RunningJobs::Entry& running_;
-    std::shared_ptr<LiveJob> live_;
-    GridSize live_size_ = live_->size();
-    std::vector<LoggedBlock> logged_;
-
-    // Where this claim begins in the log; known once it is written, on the store's thread.
-    struct Start {
-        std::uint64_t seq = 0;           // of its `started` event
-        std::uint64_t first_logged = 0;  // seq of the first block logged before; 0: none
-    };
-
-    std::shared_ptr<Start> start_ = std::make_shared<Start>();
-    std::uint32_t blocks_total_ = 0;
-    bool diverged_ = false;
-    Clock::time_point begun_ = Clock::now();
-};
-
-// The block events in the log, when they were made by this version of the solver.
-std::vector<LoggedBlock> read_logged_blocks(const WorkerContext& context, const Claim& claim) {
-    std::vector<LoggedBlock> blocks;
-    if (claim.solver_version != kSolverVersion) {
-        return blocks;
-    }
-    constexpr std::size_t kPage = 1000;
-    std::uint64_t after = 0;
-    while (after < claim.head) {
-        const auto page = context.events.read(claim.lease.job_id, after, kPage);
-        if (!page || page->events.empty()) {
-            break;
-        }
-        for (const Event& event : page->events) {
-            if (event.type == "block") {
-                blocks.push_back({event.seq, event.fields});
-            }
-            after = event.seq;
-        }
-    }
-    return blocks;
-}
 
 // One claim in hand.
 class ClaimRun {
@@ -242,11 +61,19 @@ class ClaimRun {
             );
             running_.set_deadline(Clock::now() + std::chrono::duration_cast<Clock::duration>(left));
         }
+        const EarlierProgress earlier =
+            read_earlier_progress(context_.events, claim_, live->size().cell_count());
         LoggingObserver observer(
-            context_, claim_, running_, live, read_logged_blocks(context_, claim_)
+            context_.jobs,
+            context_.running,
+            claim_,
+            [this](StopReason reason) { running_.request_stop(reason); },
+            live,
+            earlier
         );
         const auto begun = Clock::now();
-        auto finished = modelsynth::run(task, observer, running_.token());
+        const Checkpoint* from = earlier.checkpoint ? &*earlier.checkpoint : nullptr;
+        auto finished = modelsynth::run(task, observer, running_.token(), from);
         const std::chrono::duration<double> solving = Clock::now() - begun;
         if (observer.diverged()) {
             context_.log->error(
@@ -361,7 +188,7 @@ class ClaimRun {
     }
 
     void finish(Outcome outcome) {
-        outcome.finished = now_millis();
+        outcome.finished = proto::now_millis();
         const auto job = context_.jobs.finish(claim_.lease, outcome);
         if (job) {
             context_.log->info("job ended job={} state={}", job->id, proto::state_name(job->state));
@@ -391,7 +218,7 @@ void run_claim(const WorkerContext& context, const Claim& claim) {
         outcome.error =
             proto::to_json(proto::make_problem("internal", "the job ran into a fault of the server")
             );
-        outcome.finished = now_millis();
+        outcome.finished = proto::now_millis();
         static_cast<void>(context.jobs.finish(claim.lease, outcome));
     }
     context.running.settle(claim.lease.job_id);

@@ -15,10 +15,6 @@
 
 namespace modelsynth::server {
 
-// Part of what a job's log and model depend on; a change of the solver that changes models must
-// change it.
-inline constexpr const char* kSolverVersion = "discrete-1";
-
 // A job that was claimed this often in a row without logging anything new is given up: it takes
 // the server down with it, or time and again there is none to make it.
 inline constexpr std::uint32_t kFruitlessClaimsMax = 8;
@@ -39,9 +35,9 @@ struct WorkerContext {
 };
 
 // Runs one claimed job to its end, or until it is told to stop: solves, logs each block, keeps
-// the artifacts, ends the job. A job that was begun before is solved anew; since solving is
-// deterministic nothing is appended until it passes what the log already holds, and what is
-// solved again must equal what was logged. Throws nothing.
+// the artifacts, ends the job. A job that was begun before goes on from its checkpoint; since
+// solving is deterministic nothing is appended until it passes what the log already holds, and
+// what is solved again must equal what was logged. Throws nothing.
 void run_claim(const WorkerContext& context, const Claim& claim);
 
 }  // namespace modelsynth::server

@@ -33,7 +33,8 @@ class JobStore {
     // equal ones in order of arrival; it is then running. Nothing when none is queued.
     [[nodiscard]] virtual Stored<std::optional<Claim>> claim(proto::UnixMillis now) = 0;
 
-    // Appends events of a running job, numbered in the commit that writes them. Returns at once;
+    // Appends events of a running job, numbered in the commit that writes them, and its checkpoint
+    // in the same one. Returns at once;
     // `done` is called in order of the calls, on the store's thread, with the first seq once they
     // are on disk. Blocks while too much waits to be written.
     // Fails: kLeaseLost.
@@ -65,10 +66,14 @@ class JobStore {
         const std::string& id, const std::string& name
     ) = 0;
 
+    // How far the model of a job that has not ended well has come; nothing when no claim of it
+    // kept any, or when the job's "labels" tell it.
+    [[nodiscard]] virtual Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id) = 0;
+
     // Adds an artifact to a finished job; one of that name stays.
     [[nodiscard]] virtual Stored<void> link(const std::string& id, const ArtifactLink& link) = 0;
 
-    // Takes the artifacts of jobs that expired before `now`.
+    // Takes the artifacts and checkpoints of jobs that expired before `now`.
     virtual void expire(proto::UnixMillis now) = 0;
 };
 

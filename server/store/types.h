@@ -59,6 +59,15 @@ struct Lease {
     std::uint64_t token = 0;
 };
 
+// How far a running job's model has come, for a later claim to go on from and for its preview
+// meanwhile. It may lag behind the log, never run ahead of it.
+struct JobCheckpoint {
+    std::uint64_t seq = 0;  // the newest event included
+    std::uint32_t blocks_done = 0;
+    std::uint32_t blocks_accepted = 0;
+    std::string labels;  // see proto::encode_labels()
+};
+
 // A job handed to a worker.
 struct Claim {
     Lease lease;
@@ -67,6 +76,7 @@ struct Claim {
     double solved_seconds = 0;        // of earlier claims that did not end; counts to the deadline
     std::string solver_version;       // under which blocks_logged were made; empty: never started
     std::uint32_t blocks_logged = 0;  // block events that are in the log already
+    std::optional<JobCheckpoint> checkpoint;
     std::uint64_t head = 0;           // newest seq
     std::uint32_t fruitless_claims = 0;  // claims in a row that logged nothing new
 };
@@ -90,6 +100,9 @@ struct Progress {
     std::uint32_t blocks_total = 0;
     double solved_seconds = 0;
     std::string solver_version;
+    // Kept in place of an older one when given. Its seq is set by the store: the last event of
+    // the append.
+    std::optional<JobCheckpoint> checkpoint;
 };
 
 struct ArtifactLink {

@@ -2,7 +2,7 @@
 
 #include "proto/frame.h"
 #include "proto/job.h"
-#include "server/jobs/ids.h"
+#include "proto/timestamp.h"
 #include "server/stream/event_cursor.h"
 #include "server/stream/on_pool.h"
 #include "solver/mesh/glb_writer.h"
@@ -206,7 +206,7 @@ net::awaitable<bool> write_snapshot(Session& session) {
         co_return true;
     }
     const std::string text = proto::event_json(
-        job->head, "snapshot", now_millis(), proto::snapshot_fields(proto::to_json(*job))
+        job->head, "snapshot", proto::now_millis(), proto::snapshot_fields(proto::to_json(*job))
     );
     session.cursor.skip_to(job->head);
     session.needs_whole = session.upgrade.partial != Partial::kNone;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace modelsynth {
 
@@ -15,8 +16,17 @@ struct BlockReport {
     Box region;
     bool accepted = false;
     std::uint32_t attempts = 0;
+    std::uint32_t blocks_accepted = 0;  // so far, this one included
     // The labels of the whole model after the block, valid during the call.
     std::span<const Label> model;
+};
+
+// A synthesis in blocks as it stood after some of them: what another run with equal arguments
+// goes on from, to the same end.
+struct Checkpoint {
+    std::uint32_t blocks_done = 0;
+    std::uint32_t blocks_accepted = 0;
+    std::vector<Label> labels;  // of the whole model
 };
 
 // Listens to a synthesis. Called on the thread that solves, in the order of the schedule; what it
@@ -25,8 +35,8 @@ class Observer {
   public:
     virtual ~Observer() = default;
 
-    // Once, before the first block: the initial model stands.
-    virtual void on_start(std::uint32_t blocks_total, std::span<const Label> initial_model) = 0;
+    // Once, before the first block: the initial model stands, or that of the checkpoint.
+    virtual void on_start(std::uint32_t blocks_total, std::span<const Label> model) = 0;
 
     virtual void on_block(const BlockReport& report) = 0;
 };

@@ -5,9 +5,8 @@
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/problem.h"
 
-#include <map>
+#include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace modelsynth::discrete {
@@ -32,7 +31,7 @@ class Run {
           observer_(observer),
           stop_(stop) {}
 
-    Result<Synthesis> in_blocks(const Blocks& blocks) {
+    Result<Synthesis> in_blocks(const Blocks& blocks, const Checkpoint* from) {
         auto schedule = schedule_blocks(problem_.size, blocks.layout, kBlockCountMax);
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
@@ -42,10 +41,13 @@ class Run {
             return tl::unexpected(std::move(initial.error()));
         }
         labels_ = *initial;
+        if (from != nullptr) {
+            go_on_from(*from, schedule->size());
+        }
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
         BlockBases<GridTopology> bases;
         observer_.on_start(blocks_total_, labels_);
-        for (const Box& block : *schedule) {
+        for (const Box& block : std::span(*schedule).subspan(block_index_)) {
             const BlockResult result = modify(block, blocks.attempts, &bases);
             if (result.outcome == BlockOutcome::kStopped) {
                 return tl::unexpected(cancelled());
@@ -63,9 +65,14 @@ class Run {
         return finish(static_cast<double>(changed) / static_cast<double>(labels_.size()));
     }
 
-    Result<Synthesis> at_once() {
+    Result<Synthesis> at_once(const Checkpoint* from) {
         labels_.assign(problem_.size.cell_count(), kNoLabel);
         blocks_total_ = 1;
+        if (from != nullptr && from->blocks_accepted > 0) {
+            go_on_from(*from, blocks_total_);
+            observer_.on_start(blocks_total_, labels_);
+            return finish(1);
+        }
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
         const BlockResult result = modify(whole, kWholeAttempts, nullptr);
@@ -90,6 +97,18 @@ class Run {
     }
 
   private:
+    void go_on_from(const Checkpoint& from, std::size_t blocks_total) {
+        check(
+            from.labels.size() == labels_.size() && from.blocks_done <= blocks_total &&
+                from.blocks_accepted <= from.blocks_done,
+            "a checkpoint of another synthesis"
+        );
+        labels_ = from.labels;
+        block_index_ = from.blocks_done;
+        stats_.blocks_accepted = from.blocks_accepted;
+        stats_.blocks_reverted = from.blocks_done - from.blocks_accepted;
+    }
+
     BlockResult modify(const Box& block, std::uint32_t attempts, BlockBases<GridTopology>* bases) {
         if (stop_.stop_requested()) {
             return {BlockOutcome::kStopped, 0, 0};
@@ -116,7 +135,14 @@ class Run {
     void report(const Box& block, const BlockResult& result) {
         const bool accepted = result.outcome == BlockOutcome::kAccepted;
         ++(accepted ? stats_.blocks_accepted : stats_.blocks_reverted);
-        observer_.on_block({block_index_, blocks_total_, block, accepted, result.attempts, labels_}
+        observer_.on_block(
+            {block_index_,
+             blocks_total_,
+             block,
+             accepted,
+             result.attempts,
+             stats_.blocks_accepted,
+             labels_}
         );
         ++block_index_;
     }
@@ -147,14 +173,15 @@ Result<Synthesis> synthesise(
     const Parameters& parameters,
     std::uint64_t seed,
     Observer& observer,
-    const std::stop_token& stop
+    const std::stop_token& stop,
+    const Checkpoint* from
 ) {
     auto problem = make_problem(example, parameters);
     if (!problem) {
         return tl::unexpected(std::move(problem.error()));
     }
     Run run(example, parameters, *problem, seed, observer, stop);
-    return *parameters.blocks ? run.in_blocks(**parameters.blocks) : run.at_once();
+    return *parameters.blocks ? run.in_blocks(**parameters.blocks, from) : run.at_once(from);
 }
 
 }  // namespace modelsynth::discrete

@@ -29,6 +29,8 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
 
 // A model of the size asked for in which any two neighbours are neighbours in the example
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
+// With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;
+// the result is that of a run without.
 // Requires: defaults filled in and find_faults() empty (checked).
 // Ensures:  equal arguments give equal labels and equal reports, on any machine.
 // Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
@@ -39,7 +41,8 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
     const Parameters& parameters,
     std::uint64_t seed,
     Observer& observer,
-    const std::stop_token& stop
+    const std::stop_token& stop,
+    const Checkpoint* from = nullptr
 );
 
 }  // namespace modelsynth::discrete

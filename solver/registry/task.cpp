@@ -57,9 +57,11 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
 
 GridSize model_size(const Parameters& parameters) { return *discrete_of(parameters).size; }
 
-Result<Finished> run(const Task& task, Observer& observer, const std::stop_token& stop) {
+Result<Finished> run(
+    const Task& task, Observer& observer, const std::stop_token& stop, const Checkpoint* from
+) {
     auto made = discrete::synthesise(
-        discrete_of(task.example), discrete_of(task.parameters), task.seed, observer, stop
+        discrete_of(task.example), discrete_of(task.parameters), task.seed, observer, stop, from
     );
     if (!made) {
         return tl::unexpected(std::move(made.error()));

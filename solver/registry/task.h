@@ -63,9 +63,13 @@ struct Task {
 // How large the model will be.
 [[nodiscard]] GridSize model_size(const Parameters& parameters);
 
-// Runs the synthesis; see the solver's own header for what it ensures and how it fails.
+// Runs the synthesis, from the start or from a checkpoint of the same task; see the solver's own
+// header for what it ensures and how it fails.
 [[nodiscard]] Result<Finished> run(
-    const Task& task, Observer& observer, const std::stop_token& stop
+    const Task& task,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from = nullptr
 );
 
 // A region of the model as a scene, in the whole model's frame.

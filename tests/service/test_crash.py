@@ -214,7 +214,6 @@ def test_deleted_jobs_stay_forgotten_after_a_crash(make_server):
     assert server.get("/v1/jobs").json()["items"] == []
 
 
-@pytest.mark.xfail(strict=True, reason="no checkpoint is kept yet: a preview is there again once the job's solving has come past its first block")
 def test_the_preview_of_a_begun_job_that_waits_again_after_a_crash_is_still_there(make_server):
     server = make_server(workers=1)
     job = submit(server, ENDLESS_JOB)["id"]
@@ -228,6 +227,36 @@ def test_the_preview_of_a_begun_job_that_waits_again_after_a_crash_is_still_ther
     assert server.get(f"/v1/jobs/{job}").json()["state"] == "queued"
     assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
     assert server.get(f"/v1/jobs/{job}").json()["state"] == "queued"
+
+
+def test_a_job_has_a_preview_from_its_first_block_on_whenever_the_server_is_killed(make_server):
+    server = make_server(workers=1)
+    job = submit(server, ENDLESS_JOB)["id"]
+    with EventReader(server.port, job) as reader:
+        reader.until_event(lambda event: event.get("outcome") == "accepted")
+        server.kill()
+    server.start()
+    # Before the job runs again, while it does, and after it was cancelled.
+    assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
+    with EventReader(server.port, job) as reader:
+        reader.until_event(lambda event: event.get("resumed"))
+        assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
+    server.request("POST", f"/v1/jobs/{job}/cancel")
+    assert server.wait(job)["state"] == "cancelled"
+    assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
+
+
+def test_a_cancelled_job_that_waited_again_after_a_crash_keeps_its_preview(make_server):
+    server = make_server(workers=1)
+    job = submit(server, ENDLESS_JOB)["id"]
+    with EventReader(server.port, job) as reader:
+        reader.until_event(lambda event: event.get("blocks_done", 0) > 300)
+    first_in_line = submit(server, ENDLESS_JOB, priority=10)["id"]
+    restart(server)
+    with EventReader(server.port, first_in_line) as reader:
+        reader.until_event(lambda event: event["type"] == "started")
+    assert server.request("POST", f"/v1/jobs/{job}/cancel").json()["state"] == "cancelled"
+    assert server.get(f"/v1/jobs/{job}/preview.glb").status == 200
 
 
 def test_an_idempotency_key_survives_a_crash(make_server):

@@ -93,6 +93,27 @@ std::string Statement::text(int column) const {
                : std::string(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
 }
 
+Statement& Statement::bind_blob(std::string_view bytes) {
+    // The same goes for these.
+    require(
+        sqlite3_bind_blob64(
+            statement_,
+            next_parameter_++,
+            bytes.data(),
+            bytes.size(),
+            SQLITE_TRANSIENT  // NOLINT: the library's own cast
+        ),
+        statement_
+    );
+    return *this;
+}
+
+std::string Statement::blob(int column) const {
+    const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_, column));
+    const int size = sqlite3_column_bytes(statement_, column);
+    return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(size));
+}
+
 Database::Database(const std::string& path, Mode mode) {
     const int flags = (mode == Mode::kWriter ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
                                              : SQLITE_OPEN_READONLY) |

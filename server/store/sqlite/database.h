@@ -34,6 +34,7 @@ class Statement {
     Statement& bind(double value);
     Statement& bind(std::string_view value);
     Statement& bind(std::nullptr_t);
+    Statement& bind_blob(std::string_view bytes);
 
     template <class T>
     Statement& bind(const std::optional<T>& value) {
@@ -50,6 +51,7 @@ class Statement {
     [[nodiscard]] std::uint64_t natural(int column) const;
     [[nodiscard]] double real(int column) const;
     [[nodiscard]] std::string text(int column) const;
+    [[nodiscard]] std::string blob(int column) const;
 
   private:
     sqlite3_stmt* statement_;

@@ -59,6 +59,7 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     [[nodiscard]] Stored<void> erase(const std::string& id) override;
     [[nodiscard]] Stored<std::string> artifact(const std::string& id, const std::string& name)
         override;
+    [[nodiscard]] Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id) override;
     [[nodiscard]] Stored<void> link(const std::string& id, const ArtifactLink& link) override;
     void expire(proto::UnixMillis now) override;
 
@@ -82,20 +83,43 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
 
     SqliteStore(const std::filesystem::path& directory, int lock, proto::UnixMillis retention_ms);
 
-    void prepare_schema(Database& database);
     void recover(Database& database);
     void after_commit(Database& database);
+    void tell_listeners(const std::set<std::string>& jobs);
 
     void end_cancelled(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
-    void unlink_artifacts(Database& database, const std::string& id, bool keep_unfinished);
+    void unlink_artifacts(Database& database, const std::string& id, bool keep_job);
     Stored<void> link_artifacts(
         Database& database, const std::string& id, const std::vector<ArtifactLink>& artifacts
     );
 
     // Runs a read on a connection of its own.
     template <class T>
-    Stored<T> with_reader(const std::function<Stored<T>(Database&)>& read);
+    Stored<T> with_reader(const std::function<Stored<T>(Database&)>& read) {
+        try {
+            std::unique_ptr<Database> reader;
+            {
+                const std::lock_guard lock(readers_mutex_);
+                if (!idle_readers_.empty()) {
+                    reader = std::move(idle_readers_.back());
+                    idle_readers_.pop_back();
+                }
+            }
+            if (!reader) {
+                reader = std::make_unique<Database>(path_, Database::Mode::kReader);
+            }
+            // One snapshot for all statements of the read.
+            reader->execute("BEGIN");
+            Stored<T> result = read(*reader);
+            reader->execute("COMMIT");
+            const std::lock_guard lock(readers_mutex_);
+            idle_readers_.push_back(std::move(reader));
+            return result;
+        } catch (const SqliteError& error) {
+            return tl::unexpected(StoreError{StoreErrorCode::kUnavailable, error.what()});
+        }
+    }
 
     std::string path_;
     int lock_;

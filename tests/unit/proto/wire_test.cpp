@@ -182,7 +182,7 @@ TEST(Events, AreAsTheContractWritesThem) {
         R"({"seq":4,"type":"cancelled","time":"1970-01-01T00:00:00.000Z"})"
     );
     EXPECT_EQ(
-        block_fields({11, 49, {{0, 0, 5}, {10, 10, 15}}, true, 2, {}}),
+        block_fields({11, 49, {{0, 0, 5}, {10, 10, 15}}, true, 2, 9, {}}),
         R"({"index":11,"region":{"min":[0,0,5],"max":[10,10,15]},"outcome":"accepted",)"
         R"("attempts":2,"blocks_done":12,"blocks_total":49,"fraction":0.244898})"
     );

@@ -77,6 +77,47 @@ TEST(Synthesis, ReportsBlocksInOrderAndEveryStateIsConsistent) {
     EXPECT_EQ(model->stats.blocks_accepted + model->stats.blocks_reverted, observer.reports.size());
 }
 
+TEST(Synthesis, GoesOnFromACheckpointAfterAnyBlockToTheSameEnd) {
+    const Example example = make_grounded_pillars();
+    const Parameters parameters = sized(example, {17, 6, 13});
+    RecordingObserver whole;
+    const auto model = synthesise(example, parameters, 5, whole, {});
+    ASSERT_TRUE(model);
+    for (std::size_t block = 0; block < whole.reports.size(); ++block) {
+        const Checkpoint checkpoint = {
+            whole.reports[block].index + 1,
+            whole.reports[block].blocks_accepted,
+            whole.models[block]};
+        RecordingObserver rest;
+        const auto resumed = synthesise(example, parameters, 5, rest, {}, &checkpoint);
+        ASSERT_TRUE(resumed);
+        EXPECT_EQ(rest.initial_model, checkpoint.labels);
+        EXPECT_EQ(resumed->labels, model->labels);
+        EXPECT_EQ(resumed->stats.blocks_accepted, model->stats.blocks_accepted);
+        EXPECT_EQ(resumed->stats.blocks_reverted, model->stats.blocks_reverted);
+        EXPECT_EQ(resumed->stats.changed, model->stats.changed);
+        ASSERT_EQ(rest.reports.size(), whole.reports.size() - block - 1);
+        if (!rest.reports.empty()) {
+            EXPECT_EQ(rest.reports.front().index, block + 1);
+        }
+    }
+}
+
+TEST(Synthesis, GoesOnFromTheOneBlockOfAWhole) {
+    const Example example = make_grounded_pillars();
+    Parameters parameters = sized(example, {8, 4, 8});
+    parameters.blocks = std::optional<Blocks>();
+    RecordingObserver whole;
+    const auto model = synthesise(example, parameters, 5, whole, {});
+    ASSERT_TRUE(model);
+    const Checkpoint checkpoint = {1, 1, model->labels};
+    RecordingObserver rest;
+    const auto resumed = synthesise(example, parameters, 5, rest, {}, &checkpoint);
+    ASSERT_TRUE(resumed);
+    EXPECT_EQ(resumed->labels, model->labels);
+    EXPECT_TRUE(rest.reports.empty());
+}
+
 TEST(Synthesis, BlocksChangeOnlyTheirRegion) {
     const Example example = make_pillars();
     RecordingObserver observer;

@@ -1,0 +1,103 @@
+#include "server/store/sqlite/job_rows.h"
+
+#include <utility>
+
+namespace modelsynth::server {
+
+using proto::Job;
+using proto::JobState;
+using proto::UnixMillis;
+
+namespace {
+
+std::optional<UnixMillis> optional_time(const Statement& row, int column) {
+    return row.is_null(column) ? std::nullopt : std::optional(row.integer(column));
+}
+
+}  // namespace
+
+tl::unexpected<StoreError> failure(StoreErrorCode code, std::string message) {
+    return tl::unexpected(StoreError{code, std::move(message)});
+}
+
+tl::unexpected<StoreError> no_job(const std::string& id) {
+    return failure(StoreErrorCode::kNotFound, "there is no job " + id);
+}
+
+tl::unexpected<StoreError> lease_lost(const Lease& lease) {
+    return failure(StoreErrorCode::kLeaseLost, "job " + lease.job_id + " has another holder");
+}
+
+Job job_of(const Statement& row) {
+    Job job;
+    job.id = row.text(0);
+    job.state = static_cast<JobState>(row.integer(1));
+    job.solver = row.text(2);
+    job.seed = row.natural(3);
+    job.created = row.integer(4);
+    job.started = optional_time(row, 5);
+    job.finished = optional_time(row, 6);
+    job.expires = optional_time(row, 7);
+    job.blocks_done = static_cast<std::uint32_t>(row.natural(8));
+    job.blocks_total = static_cast<std::uint32_t>(row.natural(9));
+    job.request = row.text(10);
+    job.result = row.text(11);
+    job.error = row.text(12);
+    job.head = row.natural(14) - 1;
+    return job;
+}
+
+std::uint64_t queue_position(Database& database, const std::string& id, UnixMillis now) {
+    const std::string effective = kEffectivePriority;
+    Statement own =
+        database.prepare("SELECT " + effective + ", ordinal FROM job WHERE id = ?2 AND state = 0");
+    own.bind(now).bind(std::string_view(id));
+    if (!own.step()) {
+        return 0;
+    }
+    Statement before = database.prepare(
+        "SELECT COUNT(*) FROM job WHERE state = 0 AND (" + effective + " > ?2 OR (" + effective +
+        " = ?2 AND ordinal < ?3))"
+    );
+    before.bind(now).bind(own.integer(0)).bind(own.integer(1));
+    before.step();
+    return before.natural(0);
+}
+
+Stored<Job> find_job(Database& database, const std::string& id) {
+    Statement row =
+        database.prepare(std::string("SELECT ") + kJobColumns + " FROM job WHERE id = ?");
+    row.bind(std::string_view(id));
+    if (!row.step()) {
+        return no_job(id);
+    }
+    Job job = job_of(row);
+    if (job.state == JobState::kQueued) {
+        job.queue_position = queue_position(database, id, proto::now_millis());
+    }
+    return job;
+}
+
+std::optional<JobCheckpoint> find_checkpoint(Database& database, const std::string& id) {
+    Statement row = database.prepare(
+        "SELECT seq, blocks_done, blocks_accepted, labels FROM checkpoint WHERE job_id = ?"
+    );
+    row.bind(std::string_view(id));
+    if (!row.step()) {
+        return std::nullopt;
+    }
+    return JobCheckpoint{
+        row.natural(0),
+        static_cast<std::uint32_t>(row.natural(1)),
+        static_cast<std::uint32_t>(row.natural(2)),
+        row.blob(3)};
+}
+
+bool holds(Database& database, const Lease& lease) {
+    Statement row = database.prepare("SELECT token, state FROM job WHERE id = ?");
+    row.bind(std::string_view(lease.job_id));
+    return row.step() && row.natural(0) == lease.token &&
+           static_cast<JobState>(row.integer(1)) == JobState::kRunning;
+}
+
+}  // namespace modelsynth::server

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "server/store/sqlite/database.h"
+
+namespace modelsynth::server {
+
+// Checks the database for damage and brings its tables to the form that this program knows:
+// makes them in a new file, goes forward from an older form, one step after the other.
+// Throws SqliteError when the file is damaged or a newer program made it.
+void prepare_schema(Database& database);
+
+}  // namespace modelsynth::server

@@ -1,0 +1,205 @@
+// What workers ask of the embedded store: jobs to run, what became of them.
+
+#include "server/store/sqlite/job_rows.h"
+#include "server/store/sqlite/sqlite_store.h"
+
+#include <memory>
+#include <utility>
+
+namespace modelsynth::server {
+
+using proto::Job;
+using proto::JobState;
+using proto::UnixMillis;
+
+namespace {
+
+void keep_checkpoint(
+    Database& database, const std::string& id, const JobCheckpoint& checkpoint, std::uint64_t seq
+) {
+    database.prepare("INSERT OR REPLACE INTO checkpoint VALUES (?, ?, ?, ?, ?)")
+        .bind(std::string_view(id))
+        .bind(seq)
+        .bind(std::uint64_t{checkpoint.blocks_done})
+        .bind(std::uint64_t{checkpoint.blocks_accepted})
+        .bind_blob(checkpoint.labels)
+        .run();
+}
+
+}  // namespace
+
+Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now) {
+    return writer_->call<std::optional<Claim>>(
+        [&](Database& database) -> Stored<std::optional<Claim>> {
+            Claim claim;
+            {
+                Statement next = database.prepare(
+                    std::string("SELECT id, token, deadline, solved_seconds, solver_version, "
+                                "fruitless_claims, next_seq FROM job WHERE state = 0 ORDER BY ") +
+                    kEffectivePriority + " DESC, ordinal LIMIT 1"
+                );
+                next.bind(now);
+                if (!next.step()) {
+                    return std::optional<Claim>();
+                }
+                claim.lease = {next.text(0), next.natural(1) + 1};
+                if (!next.is_null(2)) {
+                    claim.deadline_seconds = next.real(2);
+                }
+                claim.solved_seconds = next.real(3);
+                claim.solver_version = next.text(4);
+                claim.fruitless_claims = static_cast<std::uint32_t>(next.natural(5));
+                claim.head = next.natural(6) - 1;
+            }
+            database
+                .prepare(
+                    "UPDATE job SET state = 1, token = ?, started = COALESCE(started, ?) "
+                    "WHERE id = ?"
+                )
+                .bind(claim.lease.token)
+                .bind(now)
+                .bind(std::string_view(claim.lease.job_id))
+                .run();
+            auto job = find_job(database, claim.lease.job_id);
+            if (!job) {
+                return tl::unexpected(std::move(job.error()));
+            }
+            claim.job = std::move(*job);
+            claim.blocks_logged = claim.job.blocks_done;
+            claim.checkpoint = find_checkpoint(database, claim.lease.job_id);
+            return std::optional<Claim>(std::move(claim));
+        }
+    );
+}
+
+void SqliteStore::append(
+    const Lease& lease,
+    std::vector<NewEvent> events,
+    const Progress& progress,
+    std::function<void(const Stored<std::uint64_t>&)> done
+) {
+    auto first_seq = std::make_shared<std::uint64_t>(0);
+    writer_->post(
+        {[this, lease, events = std::move(events), progress, first_seq](Database& database
+         ) -> Stored<void> {
+             if (!holds(database, lease)) {
+                 return lease_lost(lease);
+             }
+             {
+                 Statement row = database.prepare("SELECT next_seq FROM job WHERE id = ?");
+                 row.bind(std::string_view(lease.job_id)).step();
+                 *first_seq = row.natural(0);
+             }
+             if (progress.checkpoint) {
+                 keep_checkpoint(
+                     database, lease.job_id, *progress.checkpoint, *first_seq + events.size() - 1
+                 );
+             }
+             bool has_block = false;
+             for (const NewEvent& event : events) {
+                 append_event(database, lease.job_id, event);
+                 has_block = has_block || event.type == "block";
+             }
+             database
+                 .prepare(
+                     "UPDATE job SET blocks_done = ?, blocks_total = ?, solver_version = ?, "
+                     "solved_seconds = ?, fruitless_claims = CASE WHEN ? THEN 0 ELSE "
+                     "fruitless_claims END WHERE id = ?"
+                 )
+                 .bind(std::uint64_t{progress.blocks_done})
+                 .bind(std::uint64_t{progress.blocks_total})
+                 .bind(std::string_view(progress.solver_version))
+                 .bind(progress.solved_seconds)
+                 .bind(std::int64_t{has_block})
+                 .bind(std::string_view(lease.job_id))
+                 .run();
+             return {};
+         },
+         [first_seq, done = std::move(done)](const Stored<void>& committed) {
+             if (committed) {
+                 done(*first_seq);
+             } else {
+                 done(tl::unexpected(committed.error()));
+             }
+         }}
+    );
+}
+
+Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
+    return writer_->call<Job>([&](Database& database) -> Stored<Job> {
+        const std::string& id = lease.job_id;
+        bool cancel_requested = false;
+        {
+            Statement row =
+                database.prepare("SELECT token, state, cancel_requested FROM job WHERE id = ?");
+            row.bind(std::string_view(id));
+            if (!row.step() || row.natural(0) != lease.token) {
+                return lease_lost(lease);
+            }
+            const auto state = static_cast<JobState>(row.integer(1));
+            if (proto::is_ended(state)) {
+                return find_job(database, id);
+            }
+            if (state != JobState::kRunning) {
+                return lease_lost(lease);
+            }
+            cancel_requested = row.integer(2) != 0;
+        }
+        const JobState state = cancel_requested ? JobState::kCancelled : outcome.state;
+        const bool succeeded = state == JobState::kSucceeded;
+        const bool failed = state == JobState::kFailed;
+        if (!succeeded) {
+            // What is left of an unfinished job is its preview.
+            std::vector<ArtifactLink> kept;
+            for (const ArtifactLink& artifact : outcome.artifacts) {
+                if (!artifact.name.ends_with(".glb")) {
+                    kept.push_back(artifact);
+                }
+            }
+            if (auto linked = link_artifacts(database, id, kept); !linked) {
+                return tl::unexpected(std::move(linked.error()));
+            }
+        } else if (auto linked = link_artifacts(database, id, outcome.artifacts); !linked) {
+            return tl::unexpected(std::move(linked.error()));
+        }
+        if (!outcome.artifacts.empty()) {
+            // They tell more than it does.
+            database.prepare("DELETE FROM checkpoint WHERE job_id = ?")
+                .bind(std::string_view(id))
+                .run();
+        }
+        const std::string type(proto::state_name(state));
+        const std::string fields = succeeded ? proto::succeeded_fields(outcome.result)
+                                   : failed  ? proto::failed_fields(outcome.error)
+                                             : "{}";
+        append_event(database, id, {type, fields, outcome.finished});
+        database
+            .prepare(
+                "UPDATE job SET state = ?, finished = ?, expires = ?, result = ?, error = ? "
+                "WHERE id = ?"
+            )
+            .bind(static_cast<std::int64_t>(state))
+            .bind(outcome.finished)
+            .bind(outcome.finished + retention_ms_)
+            .bind(std::string_view(succeeded ? outcome.result : ""))
+            .bind(std::string_view(failed ? outcome.error : ""))
+            .bind(std::string_view(id))
+            .run();
+        return find_job(database, id);
+    });
+}
+
+Stored<void> SqliteStore::release(const Lease& lease, double solved_seconds) {
+    return writer_->call<void>([&](Database& database) -> Stored<void> {
+        if (!holds(database, lease)) {
+            return lease_lost(lease);
+        }
+        database.prepare("UPDATE job SET state = 0, solved_seconds = ? WHERE id = ?")
+            .bind(solved_seconds)
+            .bind(std::string_view(lease.job_id))
+            .run();
+        return {};
+    });
+}
+
+}  // namespace modelsynth::server

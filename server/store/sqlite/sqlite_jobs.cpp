@@ -1,0 +1,219 @@
+// What clients ask of the embedded store: jobs in, jobs out.
+
+#include "server/store/sqlite/job_rows.h"
+#include "server/store/sqlite/sqlite_store.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <utility>
+
+namespace modelsynth::server {
+
+using proto::Job;
+using proto::JobState;
+using proto::UnixMillis;
+
+namespace {
+
+// The job of an idempotency key, or nothing; a conflict when the key was used for another request.
+Stored<std::optional<Job>> job_of_key(
+    Database& database, const std::string& key, const std::string& request_hash
+) {
+    std::string id;
+    {
+        Statement known =
+            database.prepare("SELECT id, request_hash FROM job WHERE idempotency_key = ?");
+        known.bind(std::string_view(key));
+        if (!known.step()) {
+            return std::optional<Job>();
+        }
+        if (known.text(1) != request_hash) {
+            return failure(StoreErrorCode::kConflict, "the key was used for another request");
+        }
+        id = known.text(0);
+    }
+    auto job = find_job(database, id);
+    if (!job) {
+        return tl::unexpected(std::move(job.error()));
+    }
+    return std::optional<Job>(std::move(*job));
+}
+
+}  // namespace
+
+Stored<std::optional<Job>> SqliteStore::find_key(
+    const std::string& idempotency_key, const std::string& request_hash
+) {
+    using Found = std::optional<Job>;
+    return with_reader<Found>([&](Database& database) -> Stored<Found> {
+        return job_of_key(database, idempotency_key, request_hash);
+    });
+}
+
+Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) {
+    return writer_->call<Submitted>([&](Database& database) -> Stored<Submitted> {
+        if (!job.idempotency_key.empty()) {
+            auto known = job_of_key(database, job.idempotency_key, job.request_hash);
+            if (!known) {
+                return tl::unexpected(std::move(known.error()));
+            }
+            if (*known) {
+                return Submitted{std::move(**known), true};
+            }
+        }
+        {
+            Statement queued = database.prepare("SELECT COUNT(*) FROM job WHERE state = 0");
+            queued.step();
+            if (queued.natural(0) >= queue_max) {
+                return failure(
+                    StoreErrorCode::kQueueFull,
+                    std::to_string(queue_max) + " jobs are waiting, as many as are taken"
+                );
+            }
+        }
+        database
+            .prepare(
+                "INSERT INTO job (id, solver, seed, priority, request, example_id, "
+                "request_hash, idempotency_key, state, deadline, created) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, 0, ?, ?)"
+            )
+            .bind(std::string_view(job.id))
+            .bind(std::string_view(job.solver))
+            .bind(job.seed)
+            .bind(std::int64_t{job.priority})
+            .bind(std::string_view(job.request))
+            .bind(std::string_view(job.example_id))
+            .bind(std::string_view(job.request_hash))
+            .bind(
+                job.idempotency_key.empty() ? std::optional<std::string_view>()
+                                            : std::string_view(job.idempotency_key)
+            )
+            .bind(job.deadline_seconds)
+            .bind(job.created)
+            .run();
+        const std::uint64_t position = queue_position(database, job.id, job.created);
+        append_event(database, job.id, {"queued", proto::queued_fields(position), job.created});
+        auto stored = find_job(database, job.id);
+        if (!stored) {
+            return tl::unexpected(std::move(stored.error()));
+        }
+        stored->queue_position = position;
+        return Submitted{std::move(*stored), false};
+    });
+}
+
+Stored<Job> SqliteStore::find(const std::string& id) {
+    return with_reader<Job>([&id](Database& database) { return find_job(database, id); });
+}
+
+Stored<JobPage> SqliteStore::list(const JobQuery& query) {
+    std::int64_t before = std::numeric_limits<std::int64_t>::max();
+    if (!query.cursor.empty()) {
+        const char* end = query.cursor.data() + query.cursor.size();
+        const auto parsed = std::from_chars(query.cursor.data(), end, before, 36);
+        if (parsed.ec != std::errc() || parsed.ptr != end || before <= 0) {
+            return failure(StoreErrorCode::kInvalid, "the cursor is not one that was given out");
+        }
+    }
+    return with_reader<JobPage>([&](Database& database) -> Stored<JobPage> {
+        const std::string filter = query.state ? " AND state = ?3" : "";
+        Statement rows = database.prepare(
+            std::string("SELECT ") + kJobColumns + " FROM job WHERE ordinal < ?1" + filter +
+            " ORDER BY ordinal DESC LIMIT ?2"
+        );
+        rows.bind(before).bind(std::uint64_t{query.limit + 1});
+        if (query.state) {
+            rows.bind(static_cast<std::int64_t>(*query.state));
+        }
+        JobPage page;
+        std::int64_t last = 0;
+        while (rows.step()) {
+            if (page.jobs.size() == query.limit) {
+                std::array<char, 16> digits;
+                const auto end =
+                    std::to_chars(digits.data(), digits.data() + digits.size(), last, 36).ptr;
+                page.next = std::string(digits.data(), end);
+                break;
+            }
+            last = rows.integer(13);
+            page.jobs.push_back(job_of(rows));
+        }
+        for (Job& job : page.jobs) {
+            if (job.state == JobState::kQueued) {
+                job.queue_position = queue_position(database, job.id, proto::now_millis());
+            }
+        }
+        return page;
+    });
+}
+
+Stored<std::size_t> SqliteStore::queued_count() {
+    return with_reader<std::size_t>([](Database& database) -> Stored<std::size_t> {
+        Statement row = database.prepare("SELECT COUNT(*) FROM job WHERE state = 0");
+        row.step();
+        return static_cast<std::size_t>(row.natural(0));
+    });
+}
+
+Stored<Job> SqliteStore::cancel(const std::string& id, UnixMillis now) {
+    return writer_->call<Job>([&](Database& database) -> Stored<Job> {
+        auto job = find_job(database, id);
+        if (!job || proto::is_ended(job->state)) {
+            return job;
+        }
+        if (job->state == JobState::kRunning) {
+            database.prepare("UPDATE job SET cancel_requested = 1 WHERE id = ?")
+                .bind(std::string_view(id))
+                .run();
+            return job;
+        }
+        end_cancelled(database, id, now);
+        return find_job(database, id);
+    });
+}
+
+Stored<void> SqliteStore::erase(const std::string& id) {
+    return writer_->call<void>([&](Database& database) -> Stored<void> {
+        unlink_artifacts(database, id, false);
+        database.prepare("DELETE FROM job WHERE id = ?").bind(std::string_view(id)).run();
+        if (database.changes() == 0) {
+            return no_job(id);
+        }
+        touched_.insert(id);
+        return {};
+    });
+}
+
+Stored<std::string> SqliteStore::artifact(const std::string& id, const std::string& name) {
+    return with_reader<std::string>([&](Database& database) -> Stored<std::string> {
+        Statement row =
+            database.prepare("SELECT digest FROM job_artifact WHERE job_id = ? AND name = ?");
+        row.bind(std::string_view(id)).bind(std::string_view(name));
+        if (!row.step()) {
+            return failure(StoreErrorCode::kNotFound, "the job has no artifact " + name);
+        }
+        return row.text(0);
+    });
+}
+
+Stored<std::optional<JobCheckpoint>> SqliteStore::checkpoint(const std::string& id) {
+    using Found = std::optional<JobCheckpoint>;
+    return with_reader<Found>([&id](Database& database) -> Stored<Found> {
+        return find_checkpoint(database, id);
+    });
+}
+
+Stored<void> SqliteStore::link(const std::string& id, const ArtifactLink& link) {
+    return writer_->call<void>([&](Database& database) -> Stored<void> {
+        Statement row = database.prepare("SELECT 1 FROM job WHERE id = ?");
+        row.bind(std::string_view(id));
+        if (!row.step()) {
+            return no_job(id);
+        }
+        return link_artifacts(database, id, {link});
+    });
+}
+
+}  // namespace modelsynth::server
