@@ -158,4 +158,13 @@ Response respond_with(const Request& request, Representation representation) {
     return response;
 }
 
+Representation glb_in_memory(std::string glb, std::string file_name) {
+    Representation representation;
+    representation.media_type = "model/gltf-binary";
+    representation.etag = "\"" + sha256_hex(glb) + "\"";
+    representation.file_name = std::move(file_name);
+    representation.content = std::move(glb);
+    return representation;
+}
+
 }  // namespace modelsynth::server

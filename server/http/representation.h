@@ -20,4 +20,7 @@ struct Representation {
 // Range with If-Range. 304, 206, 416 or 200. Several ranges are answered with the whole.
 [[nodiscard]] Response respond_with(const Request& request, Representation representation);
 
+// Bytes that are made for this answer alone.
+[[nodiscard]] Representation glb_in_memory(std::string glb, std::string file_name);
+
 }  // namespace modelsynth::server

@@ -1,0 +1,87 @@
+#include "proto/example_codec.h"
+#include "proto/job.h"
+#include "server/http/handlers.h"
+#include "server/http/representation.h"
+#include "server/http/request_fields.h"
+#include "solver/mesh/glb_writer.h"
+
+#include <utility>
+
+namespace modelsynth::server {
+
+using proto::make_problem;
+
+namespace {
+
+Response no_example(const Call& call) {
+    return refuse(call, make_problem("not-found", "there is no example " + call.id.substr(0, 64)));
+}
+
+Response example_glb(const Call& call, const Scene& scene, bool named_nodes, const char* suffix) {
+    GlbOptions options;
+    options.named_nodes = named_nodes;
+    auto glb = write_glb(scene, options);
+    if (!glb) {
+        return refuse(call, proto::problem_of(glb.error()));
+    }
+    return respond_with(call.request, glb_in_memory(std::move(*glb), call.id + suffix));
+}
+
+}  // namespace
+
+Response list_examples(const Call& call) {
+    const auto entries = call.service.examples().list();
+    if (!entries) {
+        return refuse(call, entries.error());
+    }
+    std::vector<std::string> items;
+    for (const auto& entry : *entries) {
+        items.push_back(proto::example_summary(entry.example, entry.id, entry.built_in));
+    }
+    return json_response(200, proto::list_json(items, std::nullopt));
+}
+
+Response upload_example(const Call& call) {
+    const auto entry = call.service.examples().upload(call.request.body);
+    if (!entry) {
+        return refuse(call, entry.error());
+    }
+    Response response =
+        json_response(201, proto::example_resource(entry->example, entry->id, entry->built_in));
+    response.headers.emplace_back("Location", "/v1/examples/" + entry->id);
+    return response;
+}
+
+Response get_example(const Call& call) {
+    const auto entry = call.service.examples().find(call.id);
+    if (!entry) {
+        return no_example(call);
+    }
+    return json_response(200, proto::example_resource(entry->example, entry->id, entry->built_in));
+}
+
+Response delete_example(const Call& call) {
+    const auto erased = call.service.examples().erase(call.id);
+    if (!erased) {
+        return refuse(call, erased.error());
+    }
+    return {204, {}, std::string()};
+}
+
+Response get_example_model(const Call& call) {
+    const auto entry = call.service.examples().find(call.id);
+    if (!entry) {
+        return no_example(call);
+    }
+    return example_glb(call, example_scene(entry->example), false, ".glb");
+}
+
+Response get_example_pieces(const Call& call) {
+    const auto entry = call.service.examples().find(call.id);
+    if (!entry) {
+        return no_example(call);
+    }
+    return example_glb(call, pieces_scene(entry->example), true, ".pieces.glb");
+}
+
+}  // namespace modelsynth::server

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "proto/problem.h"
+#include "server/http/message.h"
+#include "server/jobs/job_service.h"
+
+#include <string>
+
+// A function per method and resource of the contract. All may block; all are thread-safe.
+
+namespace modelsynth::server {
+
+// A request in the hands of its handler.
+struct Call {
+    JobService& service;
+    const Request& request;
+    std::string id;  // the {id} of the path, if it has one
+};
+
+[[nodiscard]] Response refuse(const Call& call, const proto::Problem& problem);
+
+// job_handlers.cpp
+[[nodiscard]] Response submit_job(const Call& call);
+[[nodiscard]] Response list_jobs(const Call& call);
+[[nodiscard]] Response get_job(const Call& call);
+[[nodiscard]] Response cancel_job(const Call& call);
+[[nodiscard]] Response delete_job(const Call& call);
+[[nodiscard]] Response get_model(const Call& call);
+[[nodiscard]] Response get_preview(const Call& call);
+[[nodiscard]] Response get_labels(const Call& call);
+
+// event_handlers.cpp
+[[nodiscard]] Response get_events(const Call& call);
+[[nodiscard]] Response get_stream(const Call& call);
+
+// example_handlers.cpp
+[[nodiscard]] Response list_examples(const Call& call);
+[[nodiscard]] Response upload_example(const Call& call);
+[[nodiscard]] Response get_example(const Call& call);
+[[nodiscard]] Response delete_example(const Call& call);
+[[nodiscard]] Response get_example_model(const Call& call);
+[[nodiscard]] Response get_example_pieces(const Call& call);
+
+// service_handlers.cpp
+[[nodiscard]] Response list_solvers(const Call& call);
+[[nodiscard]] Response get_solver(const Call& call);
+[[nodiscard]] Response healthz(const Call& call);
+[[nodiscard]] Response readyz(const Call& call);
+[[nodiscard]] Response get_problem(const Call& call);
+
+}  // namespace modelsynth::server

@@ -1,0 +1,124 @@
+#include "server/http/request_fields.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace modelsynth::server {
+
+using proto::make_problem;
+using proto::Parsed;
+using proto::Problem;
+
+std::optional<std::uint64_t> parse_number(const std::string& text) {
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    if (text.empty() || parsed.ec != std::errc() || parsed.ptr != end) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    });
+    return text;
+}
+
+std::vector<std::string> list_items(const std::string& list) {
+    std::vector<std::string> items(1);
+    bool quoted = false;
+    for (const char c : list) {
+        if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && c == ',') {
+            items.emplace_back();
+        } else if (!quoted && c != ' ' && c != '\t') {
+            items.back() += c;
+        }
+    }
+    return items;
+}
+
+std::optional<Problem> check_query(
+    const Request& request, std::initializer_list<std::string_view> known
+) {
+    for (std::size_t i = 0; i < request.query.size(); ++i) {
+        const std::string& name = request.query[i].first;
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            return make_problem(
+                "malformed-request", "there is no query parameter \"" + name.substr(0, 64) + "\""
+            );
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            if (request.query[j].first == name) {
+                return make_problem(
+                    "malformed-request", "the query parameter \"" + name + "\" stands twice"
+                );
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+Parsed<std::uint64_t> query_number(
+    const Request& request,
+    std::string_view name,
+    std::uint64_t otherwise,
+    std::uint64_t min,
+    std::uint64_t max
+) {
+    const auto text = request.query_field(name);
+    if (!text) {
+        return otherwise;
+    }
+    const auto value = parse_number(*text);
+    if (!value) {
+        return tl::unexpected(make_problem(
+            "malformed-request", "\"" + std::string(name) + "\" must be a whole number"
+        ));
+    }
+    if (*value < min || *value > max) {
+        return tl::unexpected(make_problem(
+            "invalid-request",
+            "\"" + std::string(name) + "\" must be from " + std::to_string(min) + " to " +
+                std::to_string(max)
+        ));
+    }
+    return *value;
+}
+
+std::optional<std::uint64_t> preferred_wait(const Request& request) {
+    constexpr std::uint64_t kMost = 60;
+    for (const std::string& part : list_items(request.header_list("prefer").value_or(""))) {
+        const std::string preference = lower_case(part.substr(0, part.find(';')));
+        if (!preference.starts_with("wait=")) {
+            continue;
+        }
+        const std::string digits = preference.substr(5);
+        if (!digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos) {
+            return std::min(kMost, parse_number(digits).value_or(kMost));
+        }
+    }
+    return std::nullopt;
+}
+
+Parsed<std::string> idempotency_key(const Request& request) {
+    std::string key = request.header("idempotency-key").value_or("");
+    if (key.size() >= 2 && key.front() == '"' && key.back() == '"') {
+        key = key.substr(1, key.size() - 2);
+    }
+    const bool printable =
+        std::all_of(key.begin(), key.end(), [](char c) { return c > 0x20 && c < 0x7F; });
+    if (key.size() > 255 || !printable ||
+        (key.empty() && request.header("idempotency-key").has_value())) {
+        return tl::unexpected(make_problem(
+            "malformed-request", "an Idempotency-Key has 1 to 255 visible ASCII characters"
+        ));
+    }
+    return key;
+}
+
+}  // namespace modelsynth::server

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "proto/problem.h"
+#include "server/http/message.h"
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// What handlers read from query strings and headers.
+
+namespace modelsynth::server {
+
+// Digits and nothing else.
+[[nodiscard]] std::optional<std::uint64_t> parse_number(const std::string& text);
+
+// ASCII alone.
+[[nodiscard]] std::string lower_case(std::string text);
+
+// The items of a comma-separated list, white space and what is quoted left out.
+[[nodiscard]] std::vector<std::string> list_items(const std::string& list);
+
+// A query field that nobody knows is mistyped; leaving it out would answer another question.
+[[nodiscard]] std::optional<proto::Problem> check_query(
+    const Request& request, std::initializer_list<std::string_view> known
+);
+
+// A whole number of the query within bounds, or `otherwise` when it is not there.
+[[nodiscard]] proto::Parsed<std::uint64_t> query_number(
+    const Request& request,
+    std::string_view name,
+    std::uint64_t otherwise,
+    std::uint64_t min,
+    std::uint64_t max
+);
+
+// wait=N of a Prefer header (RFC 7240), capped; a malformed preference is ignored.
+[[nodiscard]] std::optional<std::uint64_t> preferred_wait(const Request& request);
+
+// Empty: there is none.
+[[nodiscard]] proto::Parsed<std::string> idempotency_key(const Request& request);
+
+}  // namespace modelsynth::server
