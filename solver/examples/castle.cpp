@@ -50,13 +50,12 @@ void add_meadow(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_empty(letter_of(castle::kAir), "air");
     builder.add_undrawn(letter_of(castle::kUpper), "upper");
     builder.add_piece('.', "grass", make_grass(palette), 0.3);
-    builder.add_piece(',', "tufts", make_tufts(palette));
-    builder.add_piece('*', "boulders", make_boulders(palette));
+    builder.add_piece(',', "wild", make_wild(palette));
     builder.add_piece('t', "tree", make_tree(palette), 1.5);
     builder.add_piece('y', "cypress", make_cypress(palette), 1.5);
     builder.add_piece('o', "place", make_place(palette), 0.2);
-    builder.add_axial(letters_of(castle::kPathX, 2), "path", make_path(palette));
-    builder.add_turned(letters_of(castle::kPathBend), "path_bend", make_path_bend(palette));
+    builder.add_axial(letters_of(castle::kPathX, 2), "path", make_path(palette), 0.7);
+    builder.add_turned(letters_of(castle::kPathBend), "path_bend", make_path_bend(palette), 2);
     builder.add_axial(
         letters_of(castle::kCottageMiddleX, 2), "cottage_middle", make_cottage_middle(palette)
     );
@@ -69,11 +68,9 @@ void add_meadow(ExampleBuilder& builder, const castle::Palette& palette) {
 }
 
 void add_court(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_piece('_', "court", make_court(palette), 0.3);
-    builder.add_piece('b', "barrels", make_barrels(palette), 2);
+    builder.add_turned(letters_of(castle::kCourt), "court", make_court(palette), 0.3);
+    builder.add_piece('b', "stores", make_stores(palette), 2);
     builder.add_piece('w', "well", make_well(palette), 2);
-    builder.add_piece('h', "hay_cart", make_hay(palette), 2);
-    builder.add_piece('m', "market_stall", make_stall(palette), 2);
     builder.add_turned(letters_of(castle::kCourtEdge), "court_edge", make_court_edge(palette));
     builder.add_turned(letters_of(castle::kShed), "shed", make_shed(palette), 3);
 }
@@ -88,14 +85,14 @@ void add_walls(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_turned(
         letters_of(castle::kCurtainConcave), "wall_nook", curtain(CurtainShape::kConcave), 0.6
     );
-    builder.add_turned(letters_of(castle::kGate), "gate", make_gate(palette));
+    builder.add_turned(letters_of(castle::kGate), "gate", make_gate(palette), 6);
     builder.add_axial("=\"", "inner_wall", make_inner_wall(palette));
-    builder.add_axial("nu", "inner_gate", make_inner_gate(palette));
+    builder.add_axial("nu", "inner_gate", make_inner_gate(palette), 4);
 }
 
 void add_towers(ExampleBuilder& builder, const castle::Palette& palette) {
     const auto foot = [&] { return make_turret_foot(palette); };
-    builder.add_turned(letters_of(castle::kTurret), "turret", foot());
+    builder.add_turned(letters_of(castle::kTurret), "turret", foot(), 1.6);
     builder.add_turned(letters_of(castle::kTurretConvex), "turret_corner", foot(), 0.6);
     builder.add_turned(letters_of(castle::kTurretConcave), "turret_nook", foot(), 0.6);
     builder.add_piece('l', "turret_storey", make_turret_storey(palette, false));
@@ -113,17 +110,21 @@ void add_halls(ExampleBuilder& builder, const castle::Palette& palette) {
     builder.add_turned(letters_of(castle::kDoor), "door", make_foot_side(palette, true));
     builder.add_piece(letter_of(castle::kInside), "inside", make_inside(palette), 0.5);
     builder.add_turned(
-        letters_of(castle::kStoreyCorner), "storey_corner", make_storey_corner(palette)
+        letters_of(castle::kStoreyCorner), "storey_corner", make_storey_corner(palette), 2
     );
     builder.add_turned(letters_of(castle::kStoreySide), "storey_side", make_storey_side(palette));
-    builder.add_turned(letters_of(castle::kRoofCorner), "roof_corner", make_roof_corner(palette));
+    builder.add_turned(
+        letters_of(castle::kRoofCorner), "roof_corner", make_roof_corner(palette), 1.5
+    );
     builder.add_turned(letters_of(castle::kRoofSide), "roof_side", make_roof_side(palette));
     builder.add_piece(letter_of(castle::kChimney), "roof_chimney", make_roof_chimney(palette));
     builder.add_turned(letters_of(castle::kRoofValley), "roof_valley", make_roof_valley(palette));
 }
 
 void add_keeps(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_turned(letters_of(castle::kKeepShaft), "keep_shaft", make_storey_corner(palette), 0.7);
+    builder.add_turned(
+        letters_of(castle::kKeepShaft), "keep_shaft", make_storey_corner(palette), 0.8
+    );
     builder.add_turned(
         letters_of(castle::kKeepBattlement), "keep_battlement", make_battlement_corner(palette)
     );
@@ -149,8 +150,8 @@ void add_keeps(ExampleBuilder& builder, const castle::Palette& palette) {
 void encourage_beginnings(ExampleBuilder& builder) {
     constexpr int kNorthWest = 1;
     for (const auto& [first, weight] :
-         {std::pair{castle::kCurtainConvex, 8.0},
-          {castle::kTurretConvex, 8.0},
+         {std::pair{castle::kCurtainConvex, 20.0},
+          {castle::kTurretConvex, 20.0},
           {castle::kFootCorner, 80.0},
           {castle::kFieldCorner, 3.0}}) {
         builder.set_weight(letter_of(first, kNorthWest), weight);
@@ -174,7 +175,7 @@ discrete::Example make_castle() {
     const auto side = [](const char* path) {
         return discrete::SideBoundary{
             discrete::BoundaryKind::kPieces,
-            {"air", "grass", "tufts", "boulders", "tree", "cypress", "upper", path}};
+            {"air", "grass", "wild", "tree", "cypress", "upper", path}};
     };
     builder.set_boundary(
         {{side("path_x"),

@@ -70,90 +70,20 @@ MeshBuilder make_shed(const Palette& palette) {
     return mesh;
 }
 
-MeshBuilder make_barrels(const Palette& palette) {
+MeshBuilder make_stores(const Palette& palette) {
     MeshBuilder mesh;
     add_earth(mesh, palette);
-    add_barrel(mesh, palette, -0.4F, -0.3F);
-    add_barrel(mesh, palette, 0.2F, -0.45F);
+    add_barrel(mesh, palette, -0.45F, -0.45F);
+    add_barrel(mesh, palette, 0.15F, -0.6F);
     mesh.material(palette.wood).tint(0.95F);
-    mesh.placed({0.25F, 0, 0.4F}, 0.4F, 1, [](MeshBuilder& crate) {
-        crate.bevelled_box({{-0.3F, 0, -0.3F}, {0.3F, 0.55F, 0.3F}}, 0.04F);
+    mesh.placed({-0.5F, 0, 0.4F}, 0.4F, 1, [](MeshBuilder& crate) {
+        crate.bevelled_box({{-0.28F, 0, -0.28F}, {0.28F, 0.5F, 0.28F}}, 0.04F);
     });
-    mesh.tint(0.85F);
-    mesh.placed({-0.45F, 0, 0.45F}, 1.2F, 1, [](MeshBuilder& crate) {
-        crate.bevelled_box({{-0.22F, 0, -0.22F}, {0.22F, 0.4F, 0.22F}}, 0.04F);
-    });
-    return mesh;
-}
-
-MeshBuilder make_hay(const Palette& palette) {
-    MeshBuilder mesh;
-    add_earth(mesh, palette);
-    mesh.material(palette.wood);
-    mesh.box({{-0.7F, 0.42F, -0.4F}, {0.5F, 0.52F, 0.4F}});
-    for (const float z : {-0.42F, 0.42F}) {
-        mesh.box({{-0.7F, 0.5F, z - 0.04F}, {0.5F, 0.78F, z + 0.04F}});
-        mesh.open_box({{0.5F, 0.4F, z * 0.7F - 0.04F}, {0.95F, 0.48F, z * 0.7F + 0.04F}}, "EUDSN");
-        // A wheel: a short drum that lies on its side.
-        mesh.material(palette.dark);
-        std::array<Point2, 8> rim;
-        for (std::size_t i = 0; i < rim.size(); ++i) {
-            const float angle = 0.7853982F * static_cast<float>(i);
-            rim[i] = {-0.15F + 0.4F * std::cos(angle), 0.4F + 0.4F * std::sin(angle)};
-        }
-        mesh.extrude(rim, z > 0 ? 0.5F : -0.58F, z > 0 ? 0.58F : -0.5F);
-        mesh.material(palette.wood);
-    }
     mesh.material(palette.wheat);
-    mesh.bevelled_box({{-0.64F, 0.5F, -0.37F}, {0.44F, 1.05F, 0.37F}}, 0.2F);
-    return mesh;
-}
-
-MeshBuilder make_stall(const Palette& palette) {
-    MeshBuilder mesh;
-    add_earth(mesh, palette);
-    mesh.material(palette.wood);
-    for (const float x : {-0.7F, 0.7F}) {
-        for (const float z : {-0.6F, 0.6F}) {
-            mesh.open_box({{x - 0.05F, 0, z - 0.05F}, {x + 0.05F, 1.5F, z + 0.05F}}, "EWSN");
-        }
-    }
-    mesh.box({{-0.75F, 0.6F, 0.2F}, {0.75F, 0.7F, 0.7F}});
-    mesh.open_box({{-0.7F, 0, 0.62F}, {0.7F, 0.6F, 0.66F}}, "EWSN");
-    // A striped awning.
-    for (int i = 0; i < 6; ++i) {
-        const float x0 = -0.84F + 0.28F * static_cast<float>(i);
-        mesh.material(i % 2 == 0 ? palette.flag : palette.plaster);
-        mesh.quad(
-            {x0, 1.4F, 0.85F}, {x0 + 0.28F, 1.4F, 0.85F}, {x0 + 0.28F, 1.8F, 0}, {x0, 1.8F, 0}
-        );
-        mesh.quad(
-            {x0, 1.8F, 0}, {x0 + 0.28F, 1.8F, 0}, {x0 + 0.28F, 1.4F, -0.85F}, {x0, 1.4F, -0.85F}
-        );
-        mesh.quad(
-            {x0 + 0.28F, 1.36F, 0.85F}, {x0, 1.36F, 0.85F}, {x0, 1.76F, 0}, {x0 + 0.28F, 1.76F, 0}
-        );
-        mesh.quad(
-            {x0 + 0.28F, 1.76F, 0}, {x0, 1.76F, 0}, {x0, 1.36F, -0.85F}, {x0 + 0.28F, 1.36F, -0.85F}
-        );
-        mesh.quad(
-            {x0, 1.22F, 0.86F},
-            {x0 + 0.28F, 1.22F, 0.86F},
-            {x0 + 0.28F, 1.4F, 0.85F},
-            {x0, 1.4F, 0.85F}
-        );
-        mesh.quad(
-            {x0 + 0.28F, 1.22F, -0.86F},
-            {x0, 1.22F, -0.86F},
-            {x0, 1.4F, -0.85F},
-            {x0 + 0.28F, 1.4F, -0.85F}
-        );
-    }
-    constexpr std::array<float, 4> kGoods = {-0.5F, -0.15F, 0.2F, 0.52F};
-    for (std::size_t i = 0; i < kGoods.size(); ++i) {
-        mesh.material(i % 2 == 0 ? palette.gold : palette.leaf);
-        mesh.ball({kGoods[i], 0.78F, 0.45F}, {0.15F, 0.12F, 0.15F}, 6);
-    }
+    mesh.placed({0.4F, 0, 0.35F}, 0.2F, 1, [](MeshBuilder& bale) {
+        bale.bevelled_box({{-0.35F, 0, -0.4F}, {0.35F, 0.45F, 0.4F}}, 0.09F);
+        bale.bevelled_box({{-0.3F, 0.44F, -0.3F}, {0.3F, 0.8F, 0.25F}}, 0.09F);
+    });
     return mesh;
 }
 

@@ -9,9 +9,7 @@ namespace modelsynth::examples::castle {
 // Beside a wall that stands in the west: with a gutter, or a shed that leans on the wall.
 [[nodiscard]] MeshBuilder make_court_edge(const Palette& palette);
 [[nodiscard]] MeshBuilder make_shed(const Palette& palette);
-[[nodiscard]] MeshBuilder make_barrels(const Palette& palette);
-[[nodiscard]] MeshBuilder make_hay(const Palette& palette);
-[[nodiscard]] MeshBuilder make_stall(const Palette& palette);
+[[nodiscard]] MeshBuilder make_stores(const Palette& palette);
 [[nodiscard]] MeshBuilder make_well(const Palette& palette);
 
 }  // namespace modelsynth::examples::castle

@@ -59,39 +59,25 @@ MeshBuilder make_grass(const Palette& palette) {
     return mesh;
 }
 
-MeshBuilder make_tufts(const Palette& palette) {
+MeshBuilder make_wild(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    add_patch(mesh, -0.2F, -0.1F, 0.7F, 0.8F);
-    add_tuft(mesh, 5, -0.4F, -0.3F, 0.42F);
-    add_tuft(mesh, 6, -0.05F, 0.15F, 0.34F);
-    add_tuft(mesh, 7, 0.5F, -0.45F, 0.3F);
-    mesh.material(palette.gold);
-    for (std::uint32_t i = 0; i < 5; ++i) {
-        const float x = 1.5F * (scatter(8, i) - 0.5F);
-        const float z = 1.5F * (scatter(9, i) - 0.5F);
-        mesh.cone(x, z, 0.05F, 0.12F, 0.2F, 4);
-    }
-    return mesh;
-}
-
-MeshBuilder make_boulders(const Palette& palette) {
-    MeshBuilder mesh;
-    add_grass(mesh, palette);
-    add_patch(mesh, 0.1F, 0.1F, 0.75F, 0.82F);
+    add_patch(mesh, 0.1F, 0.1F, 0.75F, 0.84F);
+    add_tuft(mesh, 15, 0.35F, -0.5F, 0.4F);
+    add_tuft(mesh, 16, -0.55F, 0.45F, 0.34F);
     mesh.turned(0, [&](MeshBuilder& stones) {
-        stones.material(palette.paving).tint(0.9F);
-        stones.placed({-0.2F, 0, -0.1F}, 0.5F, 1, [](MeshBuilder& stone) {
-            stone.bevelled_box({{-0.4F, 0, -0.3F}, {0.35F, 0.42F, 0.3F}}, 0.16F);
-        });
-        stones.tint(0.8F).placed({0.42F, 0, 0.35F}, 1.1F, 1, [](MeshBuilder& stone) {
-            stone.bevelled_box({{-0.22F, 0, -0.2F}, {0.22F, 0.24F, 0.2F}}, 0.1F);
+        stones.material(palette.paving).tint(0.95F);
+        stones.placed({-0.25F, 0, -0.2F}, 0.5F, 1, [](MeshBuilder& stone) {
+            stone.bevelled_box({{-0.35F, 0, -0.28F}, {0.3F, 0.36F, 0.28F}}, 0.14F);
         });
         stones.shade_upwards(0.78F, 0.4F);
     });
-    mesh.material(palette.grass);
-    add_tuft(mesh, 15, 0.3F, -0.5F, 0.32F);
-    add_tuft(mesh, 16, -0.55F, 0.4F, 0.28F);
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const float x = 1.5F * (scatter(8, i) - 0.5F);
+        const float z = 1.5F * (scatter(9, i) - 0.5F);
+        mesh.material(i % 2 == 0 ? palette.gold : palette.flag);
+        mesh.cone(x, z, 0.06F, 0.1F, 0.2F, 4);
+    }
     return mesh;
 }
 

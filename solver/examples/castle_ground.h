@@ -6,8 +6,8 @@
 namespace modelsynth::examples::castle {
 
 [[nodiscard]] MeshBuilder make_grass(const Palette& palette);
-[[nodiscard]] MeshBuilder make_tufts(const Palette& palette);
-[[nodiscard]] MeshBuilder make_boulders(const Palette& palette);
+// Tufts, flowers and a stone.
+[[nodiscard]] MeshBuilder make_wild(const Palette& palette);
 // Beside a wall that stands in the west.
 [[nodiscard]] MeshBuilder make_meadow_edge(const Palette& palette);
 // A path along x, and one from the east to the north.

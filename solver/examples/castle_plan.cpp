@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::string_view kCurtainCells = "#123456G";
 constexpr std::string_view kInnerCells = "=\"nu";
-constexpr std::string_view kGateCells = "Gnu";
-constexpr std::string_view kCourtCells = "_bwhms";
+constexpr std::string_view kCourtCells = "_bws";
 constexpr std::string_view kBodyCells = "AaBdKLMN";
 constexpr std::string_view kKeepCells = "KLMN";
 
@@ -118,7 +117,7 @@ class Plan {
             put(p, 0, ground(p));
         }
         // The piece on the ground reaches up there; what is not air is not taken for free.
-        if (in("#GCtysm", cell) || in(kInnerCells, cell)) {
+        if (in("#GCtys", cell) || in(kInnerCells, cell)) {
             put(p, 1, letter_of(kUpper));
         }
     }
@@ -127,23 +126,44 @@ class Plan {
     // walls apart.
     [[nodiscard]] char ground(const Place& p) const {
         const char cell = at(p);
-        const unsigned walls = sides(p, [this](const Place& n) {
-            return (in(kCurtainCells, at(n)) || in(kInnerCells, at(n))) && !in(kGateCells, at(n));
-        });
-        if (cell == 'o' || in(kInnerCells, cell) || walls == 0) {
+        const int wall = wall_side(p);
+        if (cell == '_' && wall < 0) {
+            return court(p);
+        }
+        if (cell == 'o' || in(kInnerCells, cell) || wall < 0) {
             require(cell != 's', p, "a shed without a wall");
             return cell;
         }
         require(in("._s", cell), p, "only edges may lie beside walls");
         const Letter edge = cell == '.' ? kMeadowEdge : cell == '_' ? kCourtEdge : kShed;
-        const int first = (p.x + p.z) % 2 == 0 ? 0 : 2;
-        for (int i = 0; i < 4; ++i) {
-            const int side = (first + i) % 4;
+        return letter_of(edge, wall + 2);
+    }
+
+    // On which side of open ground a wall stands, -1 for none. In a corner between walls it is
+    // always the north or the south, so that an edge next to an edge tells how wide the ground is.
+    [[nodiscard]] int wall_side(const Place& p) const {
+        const unsigned walls = sides(p, [this](const Place& n) {
+            return in(kCurtainCells, at(n)) || in(kInnerCells, at(n));
+        });
+        for (const int side : {1, 3, 0, 2}) {
             if ((walls >> side & 1U) != 0) {
-                return letter_of(edge, side + 2);
+                return side;
             }
         }
-        return cell;
+        return -1;
+    }
+
+    // Open court touches edges on one side of an axis only: no court is narrower than four cells.
+    [[nodiscard]] char court(const Place& p) const {
+        unsigned edges = 0;
+        for (int side = 0; side < 4; ++side) {
+            const Place n = neighbour(p, side);
+            edges |= unsigned{in("_s", at(n)) && wall_side(n) == side} << side;
+        }
+        require((edges & 0b0101U) != 0b0101U && (edges & 0b1010U) != 0b1010U, p, "a narrow court");
+        const bool east = (edges & 0b0101U) == 0 ? (p.x * 3 + p.z) % 2 == 0 : (edges & 1U) != 0;
+        const bool south = (edges & 0b1010U) == 0 ? (p.x + p.z * 5) / 2 % 2 == 0 : edges >> 3U != 0;
+        return letter_of(kCourt, south ? (east ? 2 : 1) : (east ? 3 : 0));
     }
 
     [[nodiscard]] char path(const Place& p) const {
