@@ -150,8 +150,8 @@ void add_keeps(ExampleBuilder& builder, const castle::Palette& palette) {
 void encourage_beginnings(ExampleBuilder& builder) {
     constexpr int kNorthWest = 1;
     for (const auto& [first, weight] :
-         {std::pair{castle::kCurtainConvex, 20.0},
-          {castle::kTurretConvex, 20.0},
+         {std::pair{castle::kCurtainConvex, 40.0},
+          {castle::kTurretConvex, 40.0},
           {castle::kFootCorner, 80.0},
           {castle::kFieldCorner, 3.0}}) {
         builder.set_weight(letter_of(first, kNorthWest), weight);
