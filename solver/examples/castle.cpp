@@ -144,18 +144,15 @@ void add_keeps(ExampleBuilder& builder, const castle::Palette& palette) {
     }
 }
 
-// A search goes from north-west to south-east. The corners at which it begins castles, halls and
-// fields count for more than those at which it ends them: it begins soon and ends late, so that
-// they become large.
+// A search goes from north-west to south-east. What it begins castles, halls and fields with counts
+// for more than what it ends them with, so that they come often and become large. A castle begins
+// with the meadow on the west of its wall.
 void encourage_beginnings(ExampleBuilder& builder) {
     constexpr int kNorthWest = 1;
-    for (const auto& [first, weight] :
-         {std::pair{castle::kCurtainConvex, 40.0},
-          {castle::kTurretConvex, 40.0},
-          {castle::kFootCorner, 80.0},
-          {castle::kFieldCorner, 3.0}}) {
-        builder.set_weight(letter_of(first, kNorthWest), weight);
-    }
+    constexpr int kWest = 2;
+    builder.set_weight(letter_of(castle::kMeadowEdge, kWest), 4);
+    builder.set_weight(letter_of(castle::kFootCorner, kNorthWest), 80);
+    builder.set_weight(letter_of(castle::kFieldCorner, kNorthWest), 3);
 }
 
 }  // namespace
