@@ -228,7 +228,7 @@ class Plan {
         }
     }
 
-    // What a cell is in a body: a corner, a side, the inside (2 turned: with a nook).
+    // What a cell is in a body; a nook is an inside cell with the open at one of its corners.
     struct BodyPart {
         enum Kind : std::uint8_t { kCorner, kSide, kNook, kInner } kind;
 
