@@ -1,4 +1,5 @@
 #include "solver/examples/built_in.h"
+#include "solver/examples/canyon_cliffs.h"
 #include "solver/examples/canyon_landmarks.h"
 #include "solver/examples/canyon_props.h"
 #include "solver/examples/canyon_spires.h"
@@ -8,8 +9,9 @@
 #include <array>
 #include <utility>
 
-// A red canyon at late noon: mesas and terraces of layered sandstone about turquoise streams, with
-// natural arches, hoodoos, stairs cut into the rock, rope bridges and houses of mud brick on top.
+// A red canyon in morning light: mesas and terraces of layered sandstone about turquoise streams,
+// with natural arches, hoodoos, stairs cut into the rock, rope bridges and houses of mud brick on
+// top.
 //
 // Rock is told by the corners of cells: a cell's corners reach one or two heights, and where they
 // reach two a line between rock and air runs through it. So cliffs come as edges, corners and
@@ -30,32 +32,36 @@ constexpr const char* kStairHead = "MNOP";
 constexpr const char* kTerraceStair = "QRST";
 constexpr const char* kBridgeHead = "UVWX";
 constexpr const char* kArchShoulder = "klmn";
+constexpr const char* kDwelling = "\x01\x02\x03\x04";
+constexpr const char* kBushyRim = "\x05\x06\x07\x08";
+constexpr const char* kBrokenFoot = "\x0B\x0C\x0E\x0F";
 
 CanyonPalette add_materials(ExampleBuilder& builder) {
     const auto rock = [&builder](const char* name, std::uint32_t hex) {
         return builder.add_material({name, srgb(hex), 0, 0.92F});
     };
     return {
-        rock("red rock", 0xC2573A),
-        rock("orange rock", 0xDE8A50),
-        rock("cream rock", 0xF0D0A0),
-        rock("dark rock", 0x8C3B2B),
-        rock("sand", 0xE6B98A),
-        rock("dry grass", 0xC4A75A),
-        rock("green", 0x628C5C),
-        builder.add_material({"water", srgb(0x2FA7A9), 0, 0.25F}),
-        rock("wood", 0x6B4A34)};
+        rock("red rock", 0xE27E58),
+        rock("orange rock", 0xF6AC74),
+        rock("cream rock", 0xFDEACB),
+        rock("dark rock", 0xBC6248),
+        rock("sand", 0xF8DCB0),
+        rock("dry grass", 0xEADB98),
+        rock("green", 0x84B86A),
+        builder.add_material({"water", srgb(0x58DCE0), 0, 0.25F}),
+        rock("wood", 0xA47E5C)};
 }
 
 void add_terrain(ExampleBuilder& builder, const CanyonPalette& palette) {
     builder.add_empty(kAir, "air");
     builder.add_undrawn(kSolid, "rock");
     builder.add_piece(kValley, "valley", make_valley(palette));
-    builder.add_piece(kTurf, "turf", make_turf(palette));
+    builder.add_piece(kTurf, "turf", make_turf(palette), 0.6);
     static constexpr std::array<const char*, kCliffKindCount> kKinds = {
         "foot", "cliff", "rim", "terrace"};
-    // More terraces than the example has: a mesa on a mesa is what tells a canyon from a plain.
-    static constexpr std::array<double, kCliffKindCount> kWeights = {1.2, 1, 1, 2.5};
+    // Long lines of cliff with few turns, higher than they are in the example.
+    static constexpr std::array<double, kCliffKindCount> kWeights = {1, 4, 1, 1};
+    static constexpr std::array<double, kCliffShapeCount> kShapeWeights = {2, 1.3, 1.3};
     static constexpr std::array<const char*, kCliffShapeCount> kShapes = {
         "_edge", "_corner", "_nook"};
     for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
@@ -66,13 +72,21 @@ void add_terrain(ExampleBuilder& builder, const CanyonPalette& palette) {
                 cliff_letters(cliff_kind, cliff_shape),
                 std::string(kKinds[kind]) + kShapes[shape],
                 make_cliff(palette, cliff_kind, cliff_shape),
-                kWeights[kind]
+                kWeights[kind] * kShapeWeights[shape]
             );
         }
     }
+    // A search goes from north-west to south-east: the corner at which it begins a mesa, or one
+    // on a mesa, counts for more than those at which it ends them, and so they become large.
+    constexpr int kNorthWest = 1;
+    builder.set_weight(cliff_letter(CliffKind::kValleyFoot, CliffShape::kConvex, kNorthWest), 1.2);
+    builder.set_weight(cliff_letter(CliffKind::kTerraceFoot, CliffShape::kConvex, kNorthWest), 18);
 }
 
 void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
+    builder.add_turned(kDwelling, "cliff_dwelling", make_dwelling(palette), 0.7);
+    builder.add_turned(kBushyRim, "rim_bushes", make_bushy_rim(palette), 1.2);
+    builder.add_turned(kBrokenFoot, "foot_rockfall", make_rockfall(palette), 1.2);
     builder.add_piece('p', "pebbles", make_pebbles(palette));
     builder.add_piece('c', "saguaro", make_saguaro(palette));
     builder.add_piece('s', "sage", make_sage(palette));
@@ -88,23 +102,25 @@ void add_things(ExampleBuilder& builder, const CanyonPalette& palette) {
         turned.turned(1, [&mesh](MeshBuilder& inner) { inner = std::move(mesh); });
         return turned;
     };
-    builder.add_axial("-|", "stream", from_east(make_stream(palette)));
+    builder.add_axial("-|", "stream", from_east(make_stream(palette)), 2);
     builder.add_turned(kStreamBend, "stream_bend", make_stream_bend(palette));
-    builder.add_turned(kPool, "pool", from_east(make_pool(palette)));
-    builder.add_turned(kSpring, "spring", make_spring(palette), 3);
+    // Where a ring of water would begin.
+    builder.set_weight(kStreamBend[3], 0.15);
+    builder.add_turned(kPool, "pool", from_east(make_pool(palette)), 0.15);
+    builder.add_turned(kSpring, "spring", make_spring(palette), 4);
 
-    builder.add_turned(kStair, "stair", make_stair(palette, CliffKind::kValleyFoot), 5);
+    builder.add_turned(kStair, "stair", make_stair(palette, CliffKind::kValleyFoot), 12);
     builder.add_turned(
-        kTerraceStair, "terrace_stair", make_stair(palette, CliffKind::kTerraceFoot), 8
+        kTerraceStair, "terrace_stair", make_stair(palette, CliffKind::kTerraceFoot), 12
     );
     builder.add_turned(kStairHead, "stair_head", make_stair_head(palette));
     builder.add_axial("=\"", "bridge", make_bridge(palette), 3);
-    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette), 16);
+    builder.add_turned(kBridgeHead, "bridge_head", make_bridge_head(palette), 40);
 
-    builder.add_piece('u', "hoodoo_foot", make_hoodoo_foot(palette), 2);
+    builder.add_piece('u', "hoodoo_foot", make_hoodoo_foot(palette));
     builder.add_piece('v', "hoodoo_shaft", make_hoodoo_middle(palette));
     builder.add_piece('w', "hoodoo_top", make_hoodoo_top(palette));
-    builder.add_piece('f', "arch_foot", make_arch_foot(palette), 1.5);
+    builder.add_piece('f', "arch_foot", make_arch_foot(palette), 0.15);
     builder.add_piece('i', "arch_shaft", make_arch_shaft(palette));
     builder.add_turned(kArchShoulder, "arch_shoulder", make_arch_shoulder(palette));
     builder.add_axial("<^", "arch_span", make_arch_span(palette));
@@ -147,6 +163,37 @@ std::map<char, Thing> things() {
     return meaning;
 }
 
+// Straight stretches of cliff are not all alike: at some places a variant of the same outline
+// stands instead, spread evenly over the four turns.
+void vary_cliffs(std::vector<std::vector<std::string>>& floors) {
+    struct Variant {
+        CliffKind kind;
+        const char* letters;
+        std::size_t every;
+    };
+
+    static constexpr std::array<Variant, 3> kVariants = {
+        {{CliffKind::kMiddle, kDwelling, 5},
+         {CliffKind::kRim, kBushyRim, 3},
+         {CliffKind::kValleyFoot, kBrokenFoot, 4}}};
+    for (const Variant& variant : kVariants) {
+        for (std::size_t turn = 0; turn < 4; ++turn) {
+            const char plain =
+                cliff_letter(variant.kind, CliffShape::kEdge, static_cast<int>(turn));
+            std::size_t count = 0;
+            for (std::vector<std::string>& floor : floors) {
+                for (std::string& row : floor) {
+                    for (char& letter : row) {
+                        if (letter == plain && ++count % variant.every == 0) {
+                            letter = variant.letters[turn];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 // clang-format off
 
 // The heights of the corners of cells, in levels. Every pair of cliff shapes that can meet does
@@ -154,37 +201,37 @@ std::map<char, Thing> things() {
 std::vector<std::string_view> heights() {
     return {
         "0000000000000000000000000000000000",
-        "0000022220004002222000002222222200",
-        "0000021122000000022200022122221220",
-        "0002222112003333002200022221111200",
-        "0002421122203333022200022121111220",
-        "0202422220200000022200022222222220",
-        "0222423322222003020000000212020000",
-        "0202222333332003020000000222000110",
-        "0222222223232000000000000222201100",
-        "0220000233232000000000000222200110",
+        "0000022220000002222000002222222200",
+        "0000022222000002222200022222222220",
+        "0002222222002222222200022220000220",
+        "0002222222222222222200022220000220",
+        "0222444222222002222200022222220220",
+        "0222444222222002220000000222220000",
+        "0222222233332002220000000222200110",
+        "0222222233332000000000000222201110",
+        "0220000233332000000000000222200110",
         "0220000222222200000000000000000000",
-        "0222222222002200000000000000010000",
-        "0212222222200000000000000000000000",
-        "0211222222200000000000000222200000",
-        "0222233242200000000000000222200000",
-        "0000232222000000000000000000000000",
-        "0000222322200000000000000000000000",
-        "0000242333200000000000000000000000",
+        "0222222222222200000000000000000000",
+        "0222222222200000000000000000000000",
+        "0222222222200000000000000222200000",
+        "0222233322200000000000000222200000",
+        "0000233332200000000000000000000000",
+        "0000233332200000000000000000000000",
+        "0000223322200000000000000000000000",
         "0000222222200000000000000000000000",
         "0002200002200000000000000000000000",
         "0222200002200000000000000000000000",
         "0222200002200000000000000000000000",
         "0222200002200000000000222222222220",
         "0222222222200000000000222222222220",
-        "0222212000000011111100223333332220",
-        "0222212000200011111100223333332220",
-        "0222222010000011111100223333332220",
-        "0222200000000011111100223333332220",
-        "0022004040000011111100223333332220",
-        "0022044440400011111100223333332220",
-        "0000042244400000000000222222222220",
-        "0044444440400000000000222222222220",
+        "0222222222200011111100222333332220",
+        "0222222000000011111100222333332220",
+        "0222222000000011111100223333332220",
+        "0222222000000011111100223333332220",
+        "0022222220000011111100223332222220",
+        "0022244422200011111100223332222220",
+        "0022244422200000000000222222222220",
+        "0022222222200000000000222222222220",
         "0000000000000000000000000000000000",
     };
 }
@@ -195,8 +242,8 @@ std::vector<std::string_view> thing_map() {
         ".................................",
         "....................p.....t......",
         ".......................a.........",
-        "............rt.....B==Bb.....t...",
-        ".............S.........r....\\....",
+        "............rt.....B==Bb.........",
+        ".............S.........r.........",
         ".............|...................",
         ".............|....c..............",
         ".............|........5-Sde......",
@@ -207,7 +254,7 @@ std::vector<std::string_view> thing_map() {
         "......t..t......|.........B....s.",
         "...........4----2K...s...j....p..",
         "...........|..c...........S..c...",
-        "........t..|...<..c..K.p..|.(_)p.",
+        "...........|...<..c..K.p..|.(_)p.",
         "...........|.o.!..s.......6...o..",
         ".s.........|...>........4--------",
         "......B....|p....5--3...|p.c.....",
@@ -216,12 +263,12 @@ std::vector<std::string_view> thing_map() {
         ".ab...\"....|>............S..S....",
         ".rt...B..r.|...p....H..derrj.....",
         "..r........|..././..5S....\\...r..",
-        ".jt.....s..|..ab........r........",
-        "...........|./d...r/s.t\\t....\\...",
+        ".jt........|..ab........\\........",
+        "...........|./d...r/s.t......\\...",
         "...........|o...........ttt...t..",
-        "..........c|./...../...\\rt..j\\...",
-        "..r........|....j................",
-        "...........|..././..p.j..\\.\\.....",
+        "..........c|./...../...\\rt.......",
+        "..r........|....j.........\\......",
+        "...........|..././..p.j..\\.......",
         "...........|...........j.t...j.r.",
         "...........|.....................",
     };
@@ -236,7 +283,10 @@ discrete::Example make_canyon() {
     const CanyonPalette palette = add_materials(builder);
     add_terrain(builder, palette);
     add_things(builder, palette);
-    for (std::vector<std::string>& floor : lay_out_terrain(heights(), thing_map(), things())) {
+    std::vector<std::vector<std::string>> floors =
+        lay_out_terrain(heights(), thing_map(), things());
+    vary_cliffs(floors);
+    for (std::vector<std::string>& floor : floors) {
         builder.add_floor(std::move(floor));
     }
     using discrete::BoundaryKind;

@@ -32,7 +32,7 @@ float squared(const Ray& r) { return 1 + 0.4F * r.u * r.v; }
 
 // Rock breaks in blocks: neighbouring points stand out or back together. None at the cell walls.
 float crack(std::uint32_t seed, int index, int segments) {
-    const float depth = seed == kJointSeed ? 0.15F : 0.2F;
+    const float depth = seed == kJointSeed ? 0.18F : 0.28F;
     if (seed == 0 || index == 0 || index == segments) {
         return 0;
     }
@@ -156,11 +156,12 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
     switch (kind) {
         case CliffKind::kValleyFoot:
             return {
-                {0.95F, kFloor, sand, 22},
-                {0.62F, 0.8F, red, 22},
-                {0.42F, 1.2F, red, 22},
-                {0.26F, 1.2F, dark, 24},
-                {0.22F, 1.8F, dark, 24},
+                {1.2F, kFloor, sand, 22},
+                {0.95F, 0.72F, orange, 22},
+                {0.62F, 1.2F, red, 22},
+                {0.42F, 1.45F, red, 22},
+                {0.28F, 1.5F, dark, 24},
+                {0.2F, 1.8F, dark, 24},
                 {0.1F, 1.8F, cream, 25},
                 {0.1F, 2.0F, cream, 25},
                 {0, 2.0F, orange, kJointSeed},
@@ -169,15 +170,13 @@ std::vector<SectionStop> cliff_section(const CanyonPalette& palette, CliffKind k
             return {
                 {0, 0, orange, kJointSeed},
                 {0, 0.34F, orange, kJointSeed},
-                {0.13F, 0.42F, red, 31},
-                {0.1F, 0.95F, red, 31},
-                {0.02F, 0.98F, cream, 32},
-                {0.02F, 1.16F, cream, 32},
-                {0.1F, 1.16F, red, 33},
-                {0.14F, 1.5F, dark, 33},
-                {0.12F, 1.72F, orange, 34},
-                {0.1F, 2.2F, red, 34},
-                {0.04F, 2.34F, orange, kJointSeed},
+                {0.16F, 0.5F, red, 31},
+                {0.1F, 1.25F, red, 31},
+                {-0.04F, 1.32F, cream, 32},
+                {-0.06F, 1.5F, orange, 32},
+                {-0.08F, 2.0F, orange, 35},
+                {-0.1F, 2.45F, red, 35},
+                {-0.02F, 2.6F, orange, kJointSeed},
                 {0, kTop, orange, kJointSeed}};
         case CliffKind::kRim:
             return {
@@ -208,7 +207,7 @@ void shade_cliff(MeshBuilder& mesh, CliffKind kind) {
     const bool is_foot = kind == CliffKind::kValleyFoot || kind == CliffKind::kTerraceFoot;
     mesh.shade([is_foot](const Vec3& position, const Vec3& normal) {
         const float rise = is_foot ? std::clamp((position.y - kFloor) / 1.2F, 0.0F, 1.0F) : 1.0F;
-        return (0.78F + 0.22F * rise) * (normal.y < -0.3F ? 0.7F : 1.0F);
+        return (0.86F + 0.14F * rise) * (normal.y < -0.3F ? 0.8F : 1.0F);
     });
 }
 

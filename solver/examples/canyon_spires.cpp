@@ -63,7 +63,7 @@ void add_tube(MeshBuilder& mesh, const CanyonPalette& palette, const std::vector
 }
 
 void shade_under(MeshBuilder& mesh) {
-    mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.3F ? 0.75F : 1.0F; });
+    mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.3F ? 0.85F : 1.0F; });
 }
 
 constexpr float kLegRadial = 1.1F;
@@ -89,7 +89,7 @@ MeshBuilder make_hoodoo_foot(const CanyonPalette& palette) {
          {0.66F, kTop, palette.red, 500}},
         9
     );
-    mesh.shade_upwards(0.7F, 2.0F);
+    mesh.shade_upwards(0.82F, 2.0F);
     add_ground(mesh, palette.sand, 210);
     add_lump(mesh, {1.0F, kFloor - 0.03F, 0.95F}, 0.3F, 0.3F, palette.orange, 507);
     return mesh;
@@ -148,7 +148,7 @@ MeshBuilder make_arch_foot(const CanyonPalette& palette) {
          {0, 2.2F, 0, 1.2F, 1.2F, 604},
          {0, kTop, 0, kLegRadial, kLegDepth, 0}}
     );
-    mesh.shade_upwards(0.7F, 2.2F);
+    mesh.shade_upwards(0.82F, 2.2F);
     add_ground(mesh, palette.sand, 211);
     add_lump(mesh, {1.15F, kFloor - 0.03F, 1.15F}, 0.28F, 0.3F, palette.red, 605);
     return mesh;

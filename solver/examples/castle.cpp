@@ -1,104 +1,158 @@
-// Castle: sandstone walls and blue roofs at noon. Curtain walls turn, fork and cross between
-// turrets, towers and keeps, close courts with halls in them, and let paths through their gates.
+// Castle: sandstone walls and blue roofs at noon. Curtain walls part courts from the meadow, and
+// close wherever they go, because nothing else may lie between the two grounds; halls and keeps
+// stand in the courts, cottages with red roofs on the meadow, and paths lead to the gates.
 
 #include "solver/examples/built_in.h"
+#include "solver/examples/castle_court.h"
 #include "solver/examples/castle_floors.h"
 #include "solver/examples/castle_ground.h"
+#include "solver/examples/castle_plan.h"
 #include "solver/examples/castle_roofs.h"
 #include "solver/examples/castle_towers.h"
+#include "solver/examples/castle_village.h"
 #include "solver/examples/castle_walls.h"
 #include "solver/examples/example_builder.h"
+
+#include <array>
+#include <string>
+#include <utility>
 
 namespace modelsynth::examples {
 
 namespace {
 
+using castle::letter_of;
+using castle::letters_of;
+
 castle::Palette add_palette(ExampleBuilder& builder) {
+    const auto add = [&builder](const char* name, std::uint32_t hex, float metallic, float rough) {
+        return builder.add_material({name, srgb(hex), metallic, rough});
+    };
     castle::Palette palette;
-    palette.stone = builder.add_material({"sandstone", srgb(0xE2C48D), 0, 0.9F});
-    palette.trim = builder.add_material({"deep sandstone", srgb(0xBC9460), 0, 0.9F});
-    palette.slate = builder.add_material({"blue slate", srgb(0x3E6C9C), 0, 0.65F});
-    palette.grass = builder.add_material({"grass", srgb(0x9DB05A), 0, 0.95F});
-    palette.paving = builder.add_material({"paving", srgb(0xD6C7A6), 0, 0.9F});
-    palette.dark = builder.add_material({"dark", srgb(0x2B2730), 0, 0.8F});
-    palette.wood = builder.add_material({"wood", srgb(0x8A5E38), 0, 0.8F});
-    palette.flag = builder.add_material({"flag red", srgb(0xC23A30), 0, 0.8F});
-    palette.leaf = builder.add_material({"leaf", srgb(0x5E8F3E), 0, 0.9F});
-    palette.gold = builder.add_material({"gold", srgb(0xE8B840), 1, 0.45F});
+    palette.stone = add("sandstone", 0xF2E4C2, 0, 0.9F);
+    palette.trim = add("deep sandstone", 0xE2BC88, 0, 0.9F);
+    palette.slate = add("blue slate", 0x5FA4EE, 0, 0.65F);
+    palette.grass = add("grass", 0xBCDC74, 0, 0.95F);
+    palette.paving = add("paving", 0xF0E8D4, 0, 0.9F);
+    palette.dark = add("dark", 0x54495A, 0, 0.8F);
+    palette.wood = add("wood", 0xBA8656, 0, 0.8F);
+    palette.flag = add("flag red", 0xF04A36, 0, 0.8F);
+    palette.leaf = add("leaf", 0x86C652, 0, 0.9F);
+    palette.gold = add("gold", 0xFFD65A, 0.3F, 0.5F);
+    palette.earth = add("trodden earth", 0xF0DAB0, 0, 0.95F);
+    palette.plaster = add("plaster", 0xFBF6EA, 0, 0.9F);
+    palette.tile = add("red tile", 0xF28A58, 0, 0.8F);
+    palette.wheat = add("wheat", 0xFADA6A, 0, 0.95F);
     return palette;
 }
 
-void add_ground(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_empty(' ', "air");
-    builder.add_piece('.', "grass", make_grass(palette), 0.25);
-    builder.add_piece(',', "tufts", make_tufts(palette), 0.6);
-    builder.add_piece('*', "boulders", make_boulders(palette));
-    builder.add_axial("-|", "path", make_path(palette), 0.6);
+void add_meadow(ExampleBuilder& builder, const castle::Palette& palette) {
+    builder.add_empty(letter_of(castle::kAir), "air");
+    builder.add_undrawn(letter_of(castle::kUpper), "upper");
+    builder.add_piece('.', "grass", make_grass(palette), 0.3);
+    builder.add_piece(',', "wild", make_wild(palette));
+    builder.add_piece('t', "tree", make_tree(palette), 1.5);
+    builder.add_piece('y', "cypress", make_cypress(palette), 1.5);
     builder.add_piece('o', "place", make_place(palette), 0.2);
-    builder.add_piece('t', "tree", make_tree_foot(palette));
-    builder.add_piece('T', "tree_crown", make_tree_crown(palette));
-    builder.add_piece('y', "cypress", make_cypress_foot(palette));
-    builder.add_piece('Y', "cypress_crown", make_cypress_crown(palette));
-    builder.add_piece('w', "well", make_well(palette));
+    builder.add_axial(letters_of(castle::kPathX, 2), "path", make_path(palette), 0.7);
+    builder.add_turned(letters_of(castle::kPathBend), "path_bend", make_path_bend(palette), 2);
+    builder.add_axial(
+        letters_of(castle::kCottageMiddleX, 2), "cottage_middle", make_cottage_middle(palette)
+    );
+    builder.add_turned(letters_of(castle::kCottage), "cottage", make_cottage_end(palette), 3);
+    builder.add_turned(
+        letters_of(castle::kFieldCorner), "field_corner", make_field_corner(palette)
+    );
+    builder.add_turned(letters_of(castle::kFieldSide), "field_side", make_field_side(palette), 3);
+    builder.add_turned(letters_of(castle::kMeadowEdge), "meadow_edge", make_meadow_edge(palette));
+}
+
+void add_court(ExampleBuilder& builder, const castle::Palette& palette) {
+    builder.add_turned(letters_of(castle::kCourt), "court", make_court(palette), 0.3);
+    builder.add_piece('b', "stores", make_stores(palette), 2);
+    builder.add_piece('w', "well", make_well(palette), 2);
+    builder.add_turned(letters_of(castle::kCourtEdge), "court_edge", make_court_edge(palette));
+    builder.add_turned(letters_of(castle::kShed), "shed", make_shed(palette), 3);
 }
 
 void add_walls(ExampleBuilder& builder, const castle::Palette& palette) {
-    constexpr castle::Arms kStraight = {true, false, true, false};
-    constexpr castle::Arms kCorner = {true, true, false, false};
-    constexpr castle::Arms kFork = {true, true, false, true};
-    constexpr castle::Arms kCross = {true, true, true, true};
-    builder.add_axial("=!", "wall_foot", make_wall_foot(palette, kStraight), 2);
-    builder.add_axial("~:", "wall_top", make_wall_top(palette, kStraight));
-    builder.add_turned("1234", "wall_corner_foot", make_wall_foot(palette, kCorner));
-    builder.add_turned("abcd", "wall_corner_top", make_wall_top(palette, kCorner));
-    builder.add_turned("5678", "wall_fork_foot", make_wall_foot(palette, kFork));
-    builder.add_turned("efgh", "wall_fork_top", make_wall_top(palette, kFork));
-    builder.add_piece('+', "wall_cross_foot", make_wall_foot(palette, kCross));
-    builder.add_piece('%', "wall_cross_top", make_wall_top(palette, kCross));
-    builder.add_axial("&;", "gate_foot", make_gate_foot(palette), 3);
-    builder.add_axial("'N", "gate_top", make_gate_top(palette));
+    using castle::CurtainShape;
+    const auto curtain = [&](CurtainShape shape) { return make_curtain(palette, shape); };
+    builder.add_turned(letters_of(castle::kCurtain), "wall", curtain(CurtainShape::kStraight), 8);
+    builder.add_turned(
+        letters_of(castle::kCurtainConvex), "wall_corner", curtain(CurtainShape::kConvex), 0.6
+    );
+    builder.add_turned(
+        letters_of(castle::kCurtainConcave), "wall_nook", curtain(CurtainShape::kConcave), 0.6
+    );
+    builder.add_turned(letters_of(castle::kGate), "gate", make_gate(palette), 6);
+    builder.add_axial("=\"", "inner_wall", make_inner_wall(palette));
+    builder.add_axial("nu", "inner_gate", make_inner_gate(palette), 4);
 }
 
 void add_towers(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_piece('i', "turret_foot", make_turret_foot(palette), 0.6);
-    builder.add_piece('l', "turret_storey", make_turret_storey(palette, false), 0.6);
+    const auto foot = [&] { return make_turret_foot(palette); };
+    builder.add_turned(letters_of(castle::kTurret), "turret", foot(), 1.6);
+    builder.add_turned(letters_of(castle::kTurretConvex), "turret_corner", foot(), 0.6);
+    builder.add_turned(letters_of(castle::kTurretConcave), "turret_nook", foot(), 0.6);
+    builder.add_piece('l', "turret_storey", make_turret_storey(palette, false));
     builder.add_piece('I', "turret_windows", make_turret_storey(palette, true));
     builder.add_piece('M', "turret_battlement", make_turret_battlement(palette));
     builder.add_piece('^', "turret_roof", make_turret_roof(palette, false));
-    builder.add_piece('u', "turret_roof_flag", make_turret_roof(palette, true));
-
-    builder.add_turned("ABCD", "foot_corner", make_foot_corner(palette));
-    builder.add_turned("EFGH", "foot_side", make_foot_side(palette, false), 0.6);
-    builder.add_turned("JKLO", "door", make_foot_side(palette, true));
-    builder.add_piece('#', "inside_foot", make_inside(palette), 0.6);
-    builder.add_turned("QRSV", "storey_corner", make_storey_corner(palette), 0.8);
-    builder.add_turned("jkpq", "storey_side", make_storey_side(palette));
-    builder.add_piece('@', "inside", make_inside(palette));
-    builder.add_turned("rsvx", "battlement_corner", make_battlement_corner(palette), 1.6);
-    builder.add_turned("{}<>", "battlement_side", make_battlement_side(palette));
-    builder.add_piece('_', "deck", make_deck(palette, false));
-    builder.add_piece('P', "deck_flag", make_deck(palette, true));
+    builder.add_piece('v', "turret_roof_flag", make_turret_roof(palette, true));
 }
 
-void add_roofs(ExampleBuilder& builder, const castle::Palette& palette) {
-    builder.add_turned("WXZz", "roof_corner", make_roof_corner(palette), 0.8);
-    builder.add_turned("/()U", "roof_side", make_roof_side(palette));
-    builder.add_piece('?', "roof_chimney", make_roof_chimney(palette), 0.6);
-    builder.add_turned("[]$`", "roof_valley", make_roof_valley(palette));
-    MeshBuilder flagged = make_spire(palette);
-    add_spire_flag(flagged, palette);
-    builder.add_piece('m', "spire_e", std::move(flagged), 3);
-    const char* const names[] = {"spire_n", "spire_w", "spire_s"};
-    for (int turns = 1; turns < 4; ++turns) {
+void add_halls(ExampleBuilder& builder, const castle::Palette& palette) {
+    builder.add_turned(letters_of(castle::kFootCorner), "foot_corner", make_foot_corner(palette));
+    builder.add_turned(
+        letters_of(castle::kFootSide), "foot_side", make_foot_side(palette, false), 3
+    );
+    builder.add_turned(letters_of(castle::kDoor), "door", make_foot_side(palette, true));
+    builder.add_piece(letter_of(castle::kInside), "inside", make_inside(palette), 0.5);
+    builder.add_turned(
+        letters_of(castle::kStoreyCorner), "storey_corner", make_storey_corner(palette), 2
+    );
+    builder.add_turned(letters_of(castle::kStoreySide), "storey_side", make_storey_side(palette));
+    builder.add_turned(
+        letters_of(castle::kRoofCorner), "roof_corner", make_roof_corner(palette), 1.5
+    );
+    builder.add_turned(letters_of(castle::kRoofSide), "roof_side", make_roof_side(palette));
+    builder.add_piece(letter_of(castle::kChimney), "roof_chimney", make_roof_chimney(palette));
+    builder.add_turned(letters_of(castle::kRoofValley), "roof_valley", make_roof_valley(palette));
+}
+
+void add_keeps(ExampleBuilder& builder, const castle::Palette& palette) {
+    builder.add_turned(
+        letters_of(castle::kKeepShaft), "keep_shaft", make_storey_corner(palette), 0.8
+    );
+    builder.add_turned(
+        letters_of(castle::kKeepBattlement), "keep_battlement", make_battlement_corner(palette)
+    );
+    // One quarter of the spire carries the flag.
+    static constexpr std::array<const char*, 4> kNames = {"e", "n", "w", "s"};
+    for (int turns = 0; turns < 4; ++turns) {
+        MeshBuilder quarter;
+        quarter.turned(turns, [&](MeshBuilder& spire) { spire = make_spire(palette); });
+        if (turns == 0) {
+            add_spire_flag(quarter, palette);
+        }
         builder.add_piece(
-            "n09"[turns - 1],
-            names[turns - 1],
-            std::move(MeshBuilder().turned(
-                turns, [&](MeshBuilder& quarter) { quarter = make_spire(palette); }
-            )),
-            3
+            letter_of(castle::kKeepSpire, turns),
+            std::string("keep_spire_") + kNames[static_cast<std::size_t>(turns)],
+            std::move(quarter)
         );
     }
+}
+
+// A search goes from north-west to south-east. What it begins castles, halls and fields with counts
+// for more than what it ends them with, so that they come often and become large. A castle begins
+// with the meadow on the west of its wall.
+void encourage_beginnings(ExampleBuilder& builder) {
+    constexpr int kNorthWest = 1;
+    constexpr int kWest = 2;
+    builder.set_weight(letter_of(castle::kMeadowEdge, kWest), 4);
+    builder.set_weight(letter_of(castle::kFootCorner, kNorthWest), 80);
+    builder.set_weight(letter_of(castle::kFieldCorner, kNorthWest), 3);
 }
 
 }  // namespace
@@ -106,24 +160,19 @@ void add_roofs(ExampleBuilder& builder, const castle::Palette& palette) {
 discrete::Example make_castle() {
     ExampleBuilder builder("castle", 2, 2, 2);
     const castle::Palette palette = add_palette(builder);
-    add_ground(builder, palette);
+    add_meadow(builder, palette);
+    add_court(builder, palette);
     add_walls(builder, palette);
     add_towers(builder, palette);
-    add_roofs(builder, palette);
+    add_halls(builder, palette);
+    add_keeps(builder, palette);
     castle::add_floors(builder);
+    encourage_beginnings(builder);
     // Nothing is cut at the sides: only open ground, and paths that lead out.
     const auto side = [](const char* path) {
         return discrete::SideBoundary{
             discrete::BoundaryKind::kPieces,
-            {"air",
-             "grass",
-             "tufts",
-             "boulders",
-             "tree",
-             "tree_crown",
-             "cypress",
-             "cypress_crown",
-             path}};
+            {"air", "grass", "wild", "tree", "cypress", "upper", path}};
     };
     builder.set_boundary(
         {{side("path_x"),

@@ -43,7 +43,7 @@ void add_foliage(MeshBuilder& mesh, const Vec3& centre, const Vec3& radii, float
     mesh.turned(0, [&](MeshBuilder& ball) {
         ball.tint(tint).ball(centre, radii, 8);
         ball.shade([&](const Vec3& place, const Vec3&) {
-            return 0.78F + 0.22F * (place.y - centre.y) / radii.y;
+            return 0.86F + 0.14F * (place.y - centre.y) / radii.y;
         });
     });
 }
@@ -59,46 +59,32 @@ MeshBuilder make_grass(const Palette& palette) {
     return mesh;
 }
 
-MeshBuilder make_tufts(const Palette& palette) {
+MeshBuilder make_wild(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    add_patch(mesh, -0.2F, -0.1F, 0.7F, 0.8F);
-    add_tuft(mesh, 5, -0.4F, -0.3F, 0.42F);
-    add_tuft(mesh, 6, -0.05F, 0.15F, 0.34F);
-    add_tuft(mesh, 7, 0.5F, -0.45F, 0.3F);
-    mesh.material(palette.gold);
+    add_patch(mesh, 0.1F, 0.1F, 0.75F, 0.84F);
+    add_tuft(mesh, 15, 0.35F, -0.5F, 0.4F);
+    add_tuft(mesh, 16, -0.55F, 0.45F, 0.34F);
+    mesh.turned(0, [&](MeshBuilder& stones) {
+        stones.material(palette.paving).tint(0.95F);
+        stones.placed({-0.25F, 0, -0.2F}, 0.5F, 1, [](MeshBuilder& stone) {
+            stone.bevelled_box({{-0.35F, 0, -0.28F}, {0.3F, 0.36F, 0.28F}}, 0.14F);
+        });
+        stones.shade_upwards(0.78F, 0.4F);
+    });
     for (std::uint32_t i = 0; i < 5; ++i) {
         const float x = 1.5F * (scatter(8, i) - 0.5F);
         const float z = 1.5F * (scatter(9, i) - 0.5F);
-        mesh.cone(x, z, 0.05F, 0.12F, 0.2F, 4);
+        mesh.material(i % 2 == 0 ? palette.gold : palette.flag);
+        mesh.cone(x, z, 0.06F, 0.1F, 0.2F, 4);
     }
-    return mesh;
-}
-
-MeshBuilder make_boulders(const Palette& palette) {
-    MeshBuilder mesh;
-    add_grass(mesh, palette);
-    add_patch(mesh, 0.1F, 0.1F, 0.75F, 0.82F);
-    mesh.turned(0, [&](MeshBuilder& stones) {
-        stones.material(palette.paving).tint(0.9F);
-        stones.placed({-0.2F, 0, -0.1F}, 0.5F, 1, [](MeshBuilder& stone) {
-            stone.bevelled_box({{-0.4F, 0, -0.3F}, {0.35F, 0.42F, 0.3F}}, 0.16F);
-        });
-        stones.tint(0.8F).placed({0.42F, 0, 0.35F}, 1.1F, 1, [](MeshBuilder& stone) {
-            stone.bevelled_box({{-0.22F, 0, -0.2F}, {0.22F, 0.24F, 0.2F}}, 0.1F);
-        });
-        stones.shade_upwards(0.65F, 0.4F);
-    });
-    mesh.material(palette.grass);
-    add_tuft(mesh, 15, 0.3F, -0.5F, 0.32F);
-    add_tuft(mesh, 16, -0.55F, 0.4F, 0.28F);
     return mesh;
 }
 
 MeshBuilder make_path(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    mesh.material(palette.paving).tint(0.62F);
+    mesh.material(palette.paving).tint(0.78F);
     mesh.quad({-1, 0.015F, 0.7F}, {1, 0.015F, 0.7F}, {1, 0.015F, -0.7F}, {-1, 0.015F, -0.7F});
     add_cobbles(mesh, palette, 21, {{-1, 0, -0.68F}, {1, 0.03F, 0.68F}}, 5, 3);
     mesh.tint(1);
@@ -110,7 +96,7 @@ MeshBuilder make_path(const Palette& palette) {
 MeshBuilder make_place(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    mesh.material(palette.paving).tint(0.62F);
+    mesh.material(palette.paving).tint(0.78F);
     cap(mesh, cut_square(0.3F), 1, 0.015F);
     mesh.tint(1);
     // Two rings of stones about a round one.
@@ -135,79 +121,104 @@ MeshBuilder make_place(const Palette& palette) {
     return mesh;
 }
 
-MeshBuilder make_tree_foot(const Palette& palette) {
+MeshBuilder make_path_bend(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    add_patch(mesh, 0, 0, 0.85F, 0.7F);
+    // Rings of stones about the corner between east and north.
+    const auto at = [](float radius, float turn) {
+        const float angle = 3.14159265F * (1 + turn / 2);
+        return Point2{1 + radius * std::cos(angle), -1 - radius * std::sin(angle)};
+    };
+    constexpr int kParts = 6;
+    mesh.material(palette.paving).tint(0.78F);
+    for (int i = 0; i < kParts; ++i) {
+        const float t0 = static_cast<float>(i) / kParts;
+        const float t1 = static_cast<float>(i + 1) / kParts;
+        const std::array<Point2, 4> bed = {
+            {at(0.3F, t0), at(1.7F, t0), at(1.7F, t1), at(0.3F, t1)}};
+        mesh.quad(
+            {bed[0].u, 0.015F, bed[0].v},
+            {bed[1].u, 0.015F, bed[1].v},
+            {bed[2].u, 0.015F, bed[2].v},
+            {bed[3].u, 0.015F, bed[3].v}
+        );
+    }
+    constexpr std::array<float, 6> kRings = {0.16F, 0.3F, 0.76F, 1.24F, 1.7F, 1.84F};
+    constexpr std::array<int, 5> kStones = {2, 3, 4, 6, 4};
+    for (std::size_t ring = 0; ring + 1 < kRings.size(); ++ring) {
+        const bool kerb = ring == 0 || ring == 4;
+        for (int i = 0; i < kStones[ring]; ++i) {
+            const float step = 1.0F / static_cast<float>(kStones[ring]);
+            const float t0 = step * (static_cast<float>(i) + 0.04F);
+            const float t1 = step * (static_cast<float>(i) + 0.96F);
+            const float low = kRings[ring] + 0.02F;
+            const float high = kRings[ring + 1] - 0.02F;
+            const std::array<Point2, 4> stone = {
+                {at(low, t0), at(high, t0), at(high, t1), at(low, t1)}};
+            mesh.tint(
+                0.84F +
+                0.16F *
+                    scatter(
+                        26, static_cast<std::uint32_t>(10 * ring) + static_cast<std::uint32_t>(i)
+                    )
+            );
+            mesh.prism(stone, 0, kerb ? 0.07F : 0.035F);
+        }
+    }
+    mesh.tint(1);
+    return mesh;
+}
+
+MeshBuilder make_meadow_edge(const Palette& palette) {
+    MeshBuilder mesh;
+    add_grass(mesh, palette);
+    add_patch(mesh, -0.6F, 0.3F, 0.38F, 0.84F);
+    add_tuft(mesh, 17, -0.8F, -0.55F, 0.4F);
+    add_tuft(mesh, 18, -0.72F, 0.35F, 0.3F);
+    mesh.material(palette.paving).tint(0.85F);
+    mesh.placed({-0.75F, 0, 0.75F}, 0.4F, 1, [](MeshBuilder& stone) {
+        stone.bevelled_box({{-0.16F, 0, -0.14F}, {0.16F, 0.2F, 0.14F}}, 0.07F);
+    });
+    return mesh;
+}
+
+MeshBuilder make_tree(const Palette& palette) {
+    MeshBuilder mesh;
+    add_grass(mesh, palette);
+    add_patch(mesh, 0, 0, 0.85F, 0.82F);
     add_tuft(mesh, 33, 0.5F, 0.4F, 0.3F);
     mesh.turned(0, [&](MeshBuilder& trunk) {
         trunk.material(palette.wood);
         constexpr std::array<Point2, 4> kTrunk = {
-            {{0.3F, 0}, {0.19F, 0.25F}, {0.14F, 1.1F}, {0.17F, 1.8F}}};
+            {{0.3F, 0}, {0.19F, 0.25F}, {0.14F, 1.1F}, {0.17F, 1.9F}}};
         trunk.lathe(0, 0, kTrunk, 7);
-        trunk.shade_upwards(0.6F, 1.2F);
+        trunk.shade_upwards(0.75F, 1.2F);
     });
-    return mesh;
-}
-
-MeshBuilder make_tree_crown(const Palette& palette) {
-    MeshBuilder mesh;
     mesh.material(palette.leaf);
-    add_foliage(mesh, {0, 0.15F, 0}, {0.95F, 0.75F, 0.95F}, 0.85F);
-    add_foliage(mesh, {0.22F, 0.75F, -0.15F}, {0.68F, 0.6F, 0.66F}, 1);
-    add_foliage(mesh, {-0.4F, 0.55F, 0.3F}, {0.52F, 0.45F, 0.52F}, 0.95F);
+    add_foliage(mesh, {0, 2.15F, 0}, {0.95F, 0.75F, 0.95F}, 0.88F);
+    add_foliage(mesh, {0.22F, 2.75F, -0.15F}, {0.68F, 0.6F, 0.66F}, 1);
+    add_foliage(mesh, {-0.4F, 2.55F, 0.3F}, {0.52F, 0.45F, 0.52F}, 0.96F);
     return mesh;
 }
 
-MeshBuilder make_cypress_foot(const Palette& palette) {
+MeshBuilder make_cypress(const Palette& palette) {
     MeshBuilder mesh;
     add_grass(mesh, palette);
-    add_patch(mesh, 0, 0, 0.7F, 0.7F);
+    add_patch(mesh, 0, 0, 0.7F, 0.82F);
     mesh.material(palette.wood).cylinder(0, 0, 0.12F, 0, 0.5F, 6);
     mesh.turned(0, [&](MeshBuilder& leaves) {
-        leaves.material(palette.leaf).tint(0.72F, 0.8F, 0.85F);
-        constexpr std::array<Point2, 4> kLeaves = {
-            {{0.12F, 0.3F}, {0.5F, 0.6F}, {0.62F, 1.3F}, {0.54F, 2}}};
+        leaves.material(palette.leaf).tint(0.78F, 0.86F, 0.9F);
+        constexpr std::array<Point2, 7> kLeaves = {
+            {{0.12F, 0.3F},
+             {0.5F, 0.6F},
+             {0.62F, 1.3F},
+             {0.54F, 2},
+             {0.4F, 2.8F},
+             {0.2F, 3.5F},
+             {0, 4}}};
         leaves.lathe(0, 0, kLeaves, 8);
-        leaves.shade_upwards(0.6F, 1.6F);
+        leaves.shade_upwards(0.75F, 1.6F);
     });
-    return mesh;
-}
-
-MeshBuilder make_cypress_crown(const Palette& palette) {
-    MeshBuilder mesh;
-    mesh.material(palette.leaf).tint(0.72F, 0.8F, 0.85F);
-    constexpr std::array<Point2, 4> kLeaves = {{{0.54F, 0}, {0.4F, 0.8F}, {0.2F, 1.5F}, {0, 2}}};
-    mesh.lathe(0, 0, kLeaves, 8);
-    return mesh;
-}
-
-MeshBuilder make_well(const Palette& palette) {
-    MeshBuilder mesh;
-    add_grass(mesh, palette);
-    mesh.turned(0, [&](MeshBuilder& well) {
-        well.material(palette.paving).tint(0.7F);
-        well.cylinder(0, 0, 0.9F, 0, 0.05F, 10);
-        well.material(palette.stone).tint(0.95F);
-        constexpr std::array<Point2, 6> kRing = {
-            {{0.62F, 0.05F},
-             {0.55F, 0.6F},
-             {0.64F, 0.62F},
-             {0.64F, 0.75F},
-             {0.42F, 0.75F},
-             {0.42F, 0.3F}}};
-        well.lathe(0, 0, kRing, 10, false);
-        well.shade_upwards(0.7F, 0.8F);
-    });
-    mesh.material(palette.dark).tint(1);
-    cap(mesh, cut_square(0.25F), 0.45F, 0.4F);
-    mesh.material(palette.wood);
-    for (const float x : {-0.52F, 0.52F}) {
-        mesh.box({{x - 0.05F, 0.6F, -0.05F}, {x + 0.05F, 1.5F, 0.05F}});
-    }
-    mesh.box({{-0.5F, 1.15F, -0.05F}, {0.5F, 1.25F, 0.05F}});
-    mesh.material(palette.slate);
-    mesh.gable_roof({{-0.75F, 1.4F, -0.5F}, {0.75F, 1.9F, 0.5F}}, 0.15F, 0.08F);
     return mesh;
 }
 

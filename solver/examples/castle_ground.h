@@ -2,20 +2,21 @@
 
 #include "solver/examples/castle_shapes.h"
 
-// Everything that lies open: grass, paths, trees, a well.
+// The meadow: grass, paths, trees.
 namespace modelsynth::examples::castle {
 
 [[nodiscard]] MeshBuilder make_grass(const Palette& palette);
-[[nodiscard]] MeshBuilder make_tufts(const Palette& palette);
-[[nodiscard]] MeshBuilder make_boulders(const Palette& palette);
-// A path along x.
+// Tufts, flowers and a stone.
+[[nodiscard]] MeshBuilder make_wild(const Palette& palette);
+// Beside a wall that stands in the west.
+[[nodiscard]] MeshBuilder make_meadow_edge(const Palette& palette);
+// A path along x, and one from the east to the north.
 [[nodiscard]] MeshBuilder make_path(const Palette& palette);
+[[nodiscard]] MeshBuilder make_path_bend(const Palette& palette);
 // A small paved place, which paths may reach from any side.
 [[nodiscard]] MeshBuilder make_place(const Palette& palette);
-[[nodiscard]] MeshBuilder make_tree_foot(const Palette& palette);
-[[nodiscard]] MeshBuilder make_tree_crown(const Palette& palette);
-[[nodiscard]] MeshBuilder make_cypress_foot(const Palette& palette);
-[[nodiscard]] MeshBuilder make_cypress_crown(const Palette& palette);
-[[nodiscard]] MeshBuilder make_well(const Palette& palette);
+// Trees reach up into the air above their cell.
+[[nodiscard]] MeshBuilder make_tree(const Palette& palette);
+[[nodiscard]] MeshBuilder make_cypress(const Palette& palette);
 
 }  // namespace modelsynth::examples::castle

@@ -19,10 +19,10 @@ std::vector<Point2> corner_outline(float out) { return {{out, 1}, {out, -out}, {
 std::vector<Point2> valley_outline(float out) { return {{1, -out}, {out, -out}, {out, -1}}; }
 
 void add_eaves(MeshBuilder& mesh, const Palette& palette, const Outline& outline) {
-    mesh.material(palette.wood).tint(0.7F);
+    mesh.material(palette.wood).tint(0.8F);
     constexpr std::array<Point2, 2> kSoffit = {{{0.95F, 0}, {kEaves, 0}}};
     loft(mesh, kSoffit, outline);
-    mesh.material(palette.slate).tint(0.75F);
+    mesh.material(palette.slate).tint(0.82F);
     constexpr std::array<Point2, 2> kBoard = {{{kEaves, 0}, {kEaves, kFascia}}};
     loft(mesh, kBoard, outline);
 }
@@ -91,11 +91,11 @@ MeshBuilder make_spire(const Palette& palette) {
     loft(mesh, kNeck, body);
     mesh.turned(1, [&](MeshBuilder& face) { add_corbels(face, palette, -1, 1, 1, 0.36F); });
     mesh.turned(2, [&](MeshBuilder& face) { add_corbels(face, palette, -1, 1, 1, 0.36F); });
-    mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.2F ? 0.8F : 1.0F; });
+    mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.2F ? 0.88F : 1.0F; });
     mesh.material(palette.stone).tint(0.95F);
     constexpr std::array<Point2, 3> kCornice = {{{1, 0.3F}, {1.12F, 0.44F}, {1.12F, 0.56F}}};
     loft(mesh, kCornice, body);
-    mesh.material(palette.slate).tint(0.7F);
+    mesh.material(palette.slate).tint(0.8F);
     constexpr std::array<Point2, 3> kUnder = {{{1, 0.52F}, {1.36F, 0.46F}, {1.36F, 0.54F}}};
     loft(mesh, kUnder, outline);
     add_courses(mesh, outline, {1.36F, 0.54F}, {0.75F, 1.15F}, 2);

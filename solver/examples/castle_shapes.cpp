@@ -76,7 +76,7 @@ void add_blocks(
                 scatter(seed, index) > share) {
                 continue;
             }
-            mesh.tint(0.78F + 0.22F * scatter(seed, index + 1));
+            mesh.tint(0.84F + 0.16F * scatter(seed, index + 1));
             mesh.open_box({{x0, y0, z - 0.01F}, {x1, y1, z + kProud}}, "EWUDS");
         }
     }
@@ -197,6 +197,11 @@ void add_grass(MeshBuilder& mesh, const Palette& palette) {
     mesh.quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
 }
 
+void add_earth(MeshBuilder& mesh, const Palette& palette) {
+    mesh.material(palette.earth).tint(kStoneTint);
+    mesh.quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
+}
+
 void add_cobbles(
     MeshBuilder& mesh,
     const Palette& palette,
@@ -220,7 +225,7 @@ void add_cobbles(
                 x + width * (0.97F - 0.07F * drawn()),
                 extent.max.y + 0.025F * drawn(),
                 z + depth * (0.97F - 0.07F * drawn())};
-            mesh.tint(0.78F + 0.22F * drawn());
+            mesh.tint(0.84F + 0.16F * drawn());
             mesh.open_box({low, high}, "EWUSN");
         }
     }

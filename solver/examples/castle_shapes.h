@@ -21,6 +21,10 @@ struct Palette {
     MaterialId flag = 0;
     MaterialId leaf = 0;
     MaterialId gold = 0;
+    MaterialId earth = 0;    // the courts' trodden ground
+    MaterialId plaster = 0;  // walls of cottages
+    MaterialId tile = 0;     // their roofs, the warm accent
+    MaterialId wheat = 0;
 };
 
 // Half the thickness of a curtain wall, and how far its parapet stands out.
@@ -31,7 +35,10 @@ inline constexpr float kParapetIn = 0.52F;
 // their flat side.
 inline constexpr float kTowerCut = 0.25F;
 // Plain masonry is drawn below full brightness, so that single blocks can be lighter than it.
-inline constexpr float kStoneTint = 0.9F;
+inline constexpr float kStoneTint = 0.96F;
+// Ground beside walls and buildings, and how dark masonry is at its foot.
+inline constexpr float kShadyTint = 0.92F;
+inline constexpr float kFootShade = 0.86F;
 
 // How an outline (x, z), counter-clockwise from above, lies when it is drawn `out` metres from
 // the middle of its cell.
@@ -81,6 +88,9 @@ void add_flag(MeshBuilder& mesh, const Palette& palette, const Vec3& foot, float
 
 // The cell's ground, where it is plain grass.
 void add_grass(MeshBuilder& mesh, const Palette& palette);
+
+// The cell's ground inside the walls.
+void add_earth(MeshBuilder& mesh, const Palette& palette);
 
 // Flat cobbles over the rectangle, in rows and columns of uneven stones.
 void add_cobbles(

@@ -33,7 +33,7 @@ void on_corner_faces(MeshBuilder& mesh, const std::function<void(MeshBuilder&, b
 }
 
 float under_parapet(const Vec3& place, const Vec3& normal) {
-    return (place.y > 0.2F ? 0.8F : 1.0F) * (normal.y < -0.5F ? 0.8F : 1.0F);
+    return (place.y > 0.2F ? 0.88F : 1.0F) * (normal.y < -0.5F ? 0.85F : 1.0F);
 }
 
 // Quoins on the cut edge between east and north, from course `first` up.
@@ -56,22 +56,18 @@ void add_quoins(MeshBuilder& mesh, const Palette& palette, int first) {
     mesh.tint(kStoneTint);
 }
 
-// Flagstones on a deck, as far as `east` and the cell's other borders.
-void add_slabs(MeshBuilder& mesh, const Palette& palette, float east) {
-    mesh.turned(0, [&](MeshBuilder& slabs) {
-        slabs.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& level) {
-            add_cobbles(level, palette, 111, {{-1, 0, -1}, {east, 0.012F, 1}}, 2, 3);
-        });
-        slabs.shade([](const Vec3&, const Vec3&) { return 0.86F; });
-    });
-}
-
 void add_corner_merlon(MeshBuilder& mesh) {
     const float o = kOut;
     const float c = kTowerCut;
     const std::array<Point2, 5> outline = {
         {{o, -0.5F}, {o, c - o}, {o - c, -o}, {0.5F, -o}, {kIn - 0.14F, -kIn + 0.14F}}};
     mesh.prism(outline, kParapet, kMerlon);
+}
+
+// Paving about a foot: it lies well on the meadow and in a court.
+void add_apron(MeshBuilder& mesh, const Palette& palette) {
+    mesh.material(palette.paving).tint(kShadyTint);
+    mesh.quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
 }
 
 }  // namespace
@@ -94,11 +90,8 @@ MeshBuilder make_turret_foot(const Palette& palette) {
             );
         });
     }
-    mesh.shade_upwards(0.7F, 1.6F);
-    mesh.turned(0, [&](MeshBuilder& ground) {
-        add_grass(ground, palette);
-        ground.shade([](const Vec3&, const Vec3&) { return 0.8F; });
-    });
+    mesh.shade_upwards(kFootShade, 1.6F);
+    add_apron(mesh, palette);
     return mesh;
 }
 
@@ -130,7 +123,7 @@ MeshBuilder make_turret_battlement(const Palette& palette) {
         });
     }
     mesh.shade(under_parapet);
-    mesh.material(palette.stone).tint(0.97F);
+    mesh.material(palette.stone).tint(1);
     loft(mesh, kParapetProfile, cut_square(kTowerCut));
     mesh.tint(1);
     for (int turns = 0; turns < 4; ++turns) {
@@ -139,7 +132,7 @@ MeshBuilder make_turret_battlement(const Palette& palette) {
             face.bevelled_box({{-0.22F, kParapet, kIn}, {0.22F, kMerlon, kOut}}, 0.05F);
         });
     }
-    mesh.material(palette.paving).tint(0.75F);
+    mesh.material(palette.paving).tint(0.85F);
     cap(mesh, cut_square(kTowerCut), kIn, kDeck);
     return mesh;
 }
@@ -157,7 +150,7 @@ MeshBuilder make_turret_roof(const Palette& palette, bool flag) {
     mesh.material(palette.stone).tint(0.95F);
     constexpr std::array<Point2, 3> kCornice = {{{1, 0.3F}, {1.12F, 0.44F}, {1.12F, 0.56F}}};
     loft(mesh, kCornice, cut_square(kTowerCut));
-    mesh.material(palette.slate).tint(0.7F);
+    mesh.material(palette.slate).tint(0.8F);
     const Outline eaves = cut_square(0.6F);
     constexpr std::array<Point2, 3> kEaves = {{{1, 0.5F}, {1.34F, 0.44F}, {1.34F, 0.5F}}};
     loft(mesh, kEaves, eaves);
@@ -192,11 +185,8 @@ MeshBuilder make_foot_corner(const Palette& palette) {
         );
     });
     add_quoins(mesh, palette, 2);
-    mesh.shade_upwards(0.7F, 1.6F);
-    mesh.turned(0, [&](MeshBuilder& ground) {
-        add_grass(ground, palette);
-        ground.shade([](const Vec3&, const Vec3&) { return 0.8F; });
-    });
+    mesh.shade_upwards(kFootShade, 1.6F);
+    add_apron(mesh, palette);
     return mesh;
 }
 
@@ -208,7 +198,8 @@ MeshBuilder make_foot_side(const Palette& palette, bool door) {
     loft(mesh, kFootFace, side_outline);
     mesh.turned(1, [&](MeshBuilder& face) {
         if (!door) {
-            add_blocks(face, palette, 95, {-1, 1, 0.6F, 2}, 1, 0.36F);
+            add_blocks(face, palette, 95, {-1, 1, 0.6F, 1.05F}, 1, 0.4F);
+            add_window(face, palette, {-0.2F, 0.2F, 0.95F, 1.7F}, 1);
             return;
         }
         constexpr float kHalf = 0.42F;
@@ -239,8 +230,8 @@ MeshBuilder make_foot_side(const Palette& palette, bool door) {
         face.material(palette.paving);
         face.bevelled_box({{-0.6F, 0, 1}, {0.6F, 0.12F, 1.42F}}, 0.04F);
     });
-    mesh.shade_upwards(0.7F, 1.6F);
-    mesh.turned(0, [&](MeshBuilder& ground) { add_grass(ground, palette); });
+    mesh.shade_upwards(kFootShade, 1.6F);
+    add_apron(mesh, palette);
     return mesh;
 }
 
@@ -294,7 +285,7 @@ MeshBuilder make_battlement_corner(const Palette& palette) {
         add_corbels(face, palette, -1, 1, 1, 0.36F);
     });
     mesh.shade(under_parapet);
-    mesh.material(palette.stone).tint(0.97F);
+    mesh.material(palette.stone).tint(1);
     loft(mesh, kParapetProfile, corner_outline);
     mesh.tint(1);
     add_corner_merlon(mesh);
@@ -302,7 +293,7 @@ MeshBuilder make_battlement_corner(const Palette& palette) {
         const float x = east ? -0.75F : 0.25F;
         face.bevelled_box({{x, kParapet, kIn}, {x + 0.5F, kMerlon, kOut}}, 0.05F);
     });
-    mesh.material(palette.paving).tint(0.75F);
+    mesh.material(palette.paving).tint(0.85F);
     const std::vector<Point2> edge = corner_outline(kIn);
     for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
         mesh.triangle(
@@ -311,41 +302,8 @@ MeshBuilder make_battlement_corner(const Palette& palette) {
     }
     mesh.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& level) {
         add_cobbles(level, palette, 112, {{-1, 0, -kIn}, {0.5F, 0.012F, 1}}, 2, 3);
-        level.shade([](const Vec3&, const Vec3&) { return 0.86F; });
+        level.shade([](const Vec3&, const Vec3&) { return 0.93F; });
     });
-    return mesh;
-}
-
-MeshBuilder make_battlement_side(const Palette& palette) {
-    MeshBuilder mesh;
-    mesh.material(palette.stone).tint(kStoneTint);
-    loft(mesh, kUnderParapet, side_outline);
-    mesh.turned(1, [&](MeshBuilder& face) { add_corbels(face, palette, -1, 1, 1, 0.36F); });
-    mesh.shade(under_parapet);
-    mesh.material(palette.stone).tint(0.97F);
-    loft(mesh, kParapetProfile, side_outline);
-    mesh.tint(1);
-    mesh.turned(1, [](MeshBuilder& face) {
-        for (const float x : {-0.75F, 0.25F}) {
-            face.bevelled_box({{x, kParapet, kIn}, {x + 0.5F, kMerlon, kOut}}, 0.05F);
-        }
-    });
-    mesh.material(palette.paving).tint(0.75F);
-    mesh.quad({-1, kDeck, 1}, {kIn, kDeck, 1}, {kIn, kDeck, -1}, {-1, kDeck, -1});
-    add_slabs(mesh, palette, kIn);
-    return mesh;
-}
-
-MeshBuilder make_deck(const Palette& palette, bool flag) {
-    MeshBuilder mesh;
-    mesh.material(palette.paving).tint(0.75F);
-    mesh.quad({-1, kDeck, 1}, {1, kDeck, 1}, {1, kDeck, -1}, {-1, kDeck, -1});
-    add_slabs(mesh, palette, 1);
-    if (flag) {
-        mesh.material(palette.trim).tint(1);
-        mesh.bevelled_box({{-0.3F, kDeck, -0.3F}, {0.3F, kDeck + 0.35F, 0.3F}}, 0.06F);
-        add_flag(mesh, palette, {0, kDeck, 0}, 3.4F);
-    }
     return mesh;
 }
 

@@ -20,7 +20,5 @@ namespace modelsynth::examples::castle {
 // Nothing of the inside shows; a sheet of floor keeps the piece from being nothing at all.
 [[nodiscard]] MeshBuilder make_inside(const Palette& palette);
 [[nodiscard]] MeshBuilder make_battlement_corner(const Palette& palette);
-[[nodiscard]] MeshBuilder make_battlement_side(const Palette& palette);
-[[nodiscard]] MeshBuilder make_deck(const Palette& palette, bool flag);
 
 }  // namespace modelsynth::examples::castle

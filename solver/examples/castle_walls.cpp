@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace modelsynth::examples::castle {
 
@@ -54,48 +55,35 @@ void add_merlon(MeshBuilder& mesh, float x0, float x1, float low, float high) {
     mesh.bevelled_box({{from, kParapet, kParapetIn}, {to, kMerlon, kParapetOut}}, 0.05F);
 }
 
-void add_merlons(MeshBuilder& mesh, const Arms& arms) {
+// Merlons look over the meadow: on the sides given, and in the nooks between arms where asked.
+void add_merlons(MeshBuilder& mesh, const Arms& arms, const Arms& outward, bool in_nooks) {
     for (std::size_t side = 0; side < 4; ++side) {
         const bool arm = arms[(side + 3) % 4];  // the south, once the sides are turned
         const bool east = arms[side];
         const bool west = arms[(side + 2) % 4];
         mesh.turned(static_cast<int>(side), [&](MeshBuilder& turned) {
-            if (!arm) {
+            if (!arm && outward[(side + 3) % 4]) {
                 // Where two sides meet, the one that ends there in the east has the corner.
                 const float low = west ? -1 : -kParapetIn;
                 const float high = east ? 1 : kParapetOut;
                 add_merlon(turned, -0.78F, -0.26F, low, high);
                 add_merlon(turned, 0.26F, 0.78F, low, high);
-            } else if (east) {
+            } else if (arm && east && in_nooks) {
                 add_merlon(turned, kParapetIn, 0.78F, -1, 1);
             }
         });
     }
 }
 
-// How far a place is from the wall's middle line, measured square.
-float distance_from(const Arms& arms, const Vec3& place) {
-    float least = std::max(std::abs(place.x), std::abs(place.z));
-    const std::array<float, 4> along = {place.x, -place.z, -place.x, place.z};
-    const std::array<float, 4> aside = {place.z, place.x, place.z, place.x};
-    for (std::size_t side = 0; side < 4; ++side) {
-        if (arms[side] && along[side] > 0) {
-            least = std::min(least, std::abs(aside[side]));
-        }
-    }
-    return least;
-}
-
-// Grass beside the wall, in its shade near the foot.
-void add_verge(MeshBuilder& mesh, const Palette& palette, const Arms& arms) {
-    mesh.turned(0, [&](MeshBuilder& verge) {
-        constexpr std::array<Point2, 2> kVerge = {{{1, 0}, {0.7F, 0}}};
-        verge.material(palette.grass).tint(kStoneTint);
-        loft_wall(verge, arms, kVerge);
-        verge.shade([&](const Vec3& place, const Vec3&) {
-            return distance_from(arms, place) > 0.9F ? 1.0F : 0.62F;
+// Ground about the wall, a quarter of the cell each: north-east, north-west, south-west,
+// south-east.
+void add_quarters(MeshBuilder& mesh, const Palette& palette, const Arms& court) {
+    for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+        mesh.turned(static_cast<int>(quarter), [&](MeshBuilder& ground) {
+            ground.material(court[quarter] ? palette.earth : palette.grass).tint(kShadyTint);
+            ground.quad({0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1});
         });
-    });
+    }
 }
 
 // The faces of a wall that look straight out, as panels facing south.
@@ -116,41 +104,45 @@ void on_faces(
     }
 }
 
-}  // namespace
-
-MeshBuilder make_wall_foot(const Palette& palette, const Arms& arms) {
-    MeshBuilder mesh;
-    mesh.material(palette.trim).tint(kStoneTint);
-    loft_wall(mesh, arms, std::span(kFoot).first(3));
-    mesh.material(palette.stone);
-    loft_wall(mesh, arms, std::span(kFoot).subspan(2));
-    on_faces(mesh, arms, [&](MeshBuilder& face, std::uint32_t side, float x0, float x1) {
-        add_blocks(face, palette, 11 + side, {x0, x1, 0.5F, 2}, kWallHalf, 0.34F);
+// The lower half of a wall, two metres up.
+void add_foot(MeshBuilder& wall, const Palette& palette, const Arms& arms) {
+    wall.turned(0, [&](MeshBuilder& mesh) {
+        mesh.material(palette.trim).tint(kStoneTint);
+        loft_wall(mesh, arms, std::span(kFoot).first(3));
+        mesh.material(palette.stone);
+        loft_wall(mesh, arms, std::span(kFoot).subspan(2));
+        on_faces(mesh, arms, [&](MeshBuilder& face, std::uint32_t side, float x0, float x1) {
+            add_blocks(face, palette, 11 + side, {x0, x1, 0.5F, 2}, kWallHalf, 0.34F);
+        });
+        mesh.shade_upwards(kFootShade, 1.6F);
     });
-    mesh.shade_upwards(0.7F, 1.6F);
-    add_verge(mesh, palette, arms);
-    return mesh;
 }
 
-MeshBuilder make_wall_top(const Palette& palette, const Arms& arms) {
-    MeshBuilder mesh;
-    mesh.material(palette.stone).tint(kStoneTint);
-    loft_wall(mesh, arms, kUnderParapet);
-    on_faces(mesh, arms, [&](MeshBuilder& face, std::uint32_t side, float x0, float x1) {
-        add_blocks(face, palette, 31 + side, {x0, x1, 0, 0.4F}, kWallHalf, 0.5F);
-        add_corbels(face, palette, x0, x1, kWallHalf, 0.68F);
+// The upper half, with corbels, walk and parapet.
+void add_top(
+    MeshBuilder& wall,
+    const Palette& palette,
+    const Arms& arms,
+    const Arms& outward,
+    bool merlons_in_nooks
+) {
+    wall.placed({0, 2, 0}, 0, 1, [&](MeshBuilder& mesh) {
+        mesh.material(palette.stone).tint(kStoneTint);
+        loft_wall(mesh, arms, kUnderParapet);
+        on_faces(mesh, arms, [&](MeshBuilder& face, std::uint32_t side, float x0, float x1) {
+            add_blocks(face, palette, 31 + side, {x0, x1, 0, 0.4F}, kWallHalf, 0.5F);
+            add_corbels(face, palette, x0, x1, kWallHalf, 0.68F);
+        });
+        mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.5F ? 0.88F : 1.0F; });
+        mesh.material(palette.stone).tint(1);
+        loft_wall(mesh, arms, kOverWall);
+        add_merlons(mesh, arms, outward, merlons_in_nooks);
+        mesh.material(palette.paving).tint(0.85F);
+        loft_wall(mesh, arms, kWalkway);
     });
-    mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.5F ? 0.82F : 1.0F; });
-    mesh.material(palette.stone).tint(0.97F);
-    loft_wall(mesh, arms, kOverWall);
-    mesh.tint(1);
-    add_merlons(mesh, arms);
-    mesh.material(palette.paving).tint(0.78F);
-    loft_wall(mesh, arms, kWalkway);
-    return mesh;
 }
 
-MeshBuilder make_gate_foot(const Palette& palette) {
+void add_gate_foot(MeshBuilder& gate, const Palette& palette, bool inner) {
     MeshBuilder mesh;
     mesh.material(palette.stone).tint(kStoneTint);
     for (const int turns : {0, 2}) {
@@ -188,8 +180,8 @@ MeshBuilder make_gate_foot(const Palette& palette) {
             }
         });
     }
-    mesh.shade_upwards(0.7F, 1.6F);
-    mesh.material(palette.paving).tint(0.62F);
+    mesh.shade_upwards(kFootShade, 1.6F);
+    mesh.material(palette.paving).tint(0.78F);
     mesh.quad(
         {-kGateHalf - 0.02F, 0.015F, 1},
         {kGateHalf + 0.02F, 0.015F, 1},
@@ -197,18 +189,17 @@ MeshBuilder make_gate_foot(const Palette& palette) {
         {-kGateHalf - 0.02F, 0.015F, -1}
     );
     add_cobbles(mesh, palette, 51, {{-kGateHalf, 0, -1}, {kGateHalf, 0.03F, 1}}, 3, 5);
-    mesh.material(palette.grass).tint(kStoneTint);
-    mesh.quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
-    return mesh;
+    gate.turned(0, [&](MeshBuilder& foot) { foot = std::move(mesh); });
+    add_quarters(gate, palette, {true, true, inner, inner});
 }
 
-MeshBuilder make_gate_top(const Palette& palette) {
+void add_gate_top(MeshBuilder& gate, const Palette& palette) {
     constexpr float kArchTop = 0.72F;
     MeshBuilder mesh;
     mesh.material(palette.stone).tint(kStoneTint);
     mesh.arch({{-1, 0, -kWallHalf}, {1, kArchTop, kWallHalf}}, 2 * kGateHalf, 0);
     const Arms arms = {true, false, true, false};
-    mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.5F ? 0.82F : 1.0F; });
+    mesh.shade([](const Vec3& place, const Vec3&) { return place.y > 0.5F ? 0.88F : 1.0F; });
     for (const int turns : {0, 2}) {
         mesh.turned(turns, [&](MeshBuilder& face) {
             // Voussoirs.
@@ -259,9 +250,58 @@ MeshBuilder make_gate_top(const Palette& palette) {
          {kParapetIn, kWalk}}};
     loft_wall(mesh, arms, kOverGate);
     mesh.tint(1);
-    add_merlons(mesh, arms);
-    mesh.material(palette.paving).tint(0.78F);
+    add_merlons(mesh, arms, {false, false, false, true}, false);
+    mesh.material(palette.paving).tint(0.85F);
     loft_wall(mesh, arms, kWalkway);
+    gate.placed({0, 2, 0}, 0, 1, [&](MeshBuilder& top) { top = std::move(mesh); });
+}
+
+}  // namespace
+
+MeshBuilder make_curtain(const Palette& palette, CurtainShape shape) {
+    // As built the meadow lies in the east, in the east and north, or in the corner between them.
+    static constexpr std::array<Arms, 3> kArms = {
+        {{false, true, false, true}, {false, false, true, true}, {true, true, false, false}}};
+    static constexpr std::array<Arms, 3> kOutward = {
+        {{true, false, false, false}, {true, true, false, false}, {}}};
+    static constexpr std::array<Arms, 3> kCourt = {
+        {{false, true, true, false}, {false, false, true, false}, {false, true, true, true}}};
+    const auto index = static_cast<std::size_t>(shape);
+    const bool concave = shape == CurtainShape::kConcave;
+    MeshBuilder mesh;
+    add_foot(mesh, palette, kArms[index]);
+    add_top(mesh, palette, kArms[index], kOutward[index], concave);
+    if (shape == CurtainShape::kStraight) {
+        mesh.turned(1, [&](MeshBuilder& face) {
+            add_window(face, palette, {-0.06F, 0.06F, 1.05F, 1.85F}, kWallHalf);
+        });
+    }
+    add_quarters(mesh, palette, kCourt[index]);
+    return mesh;
+}
+
+MeshBuilder make_inner_wall(const Palette& palette) {
+    constexpr Arms kAlong = {true, false, true, false};
+    MeshBuilder mesh;
+    add_foot(mesh, palette, kAlong);
+    add_top(mesh, palette, kAlong, {}, false);
+    add_quarters(mesh, palette, {true, true, true, true});
+    return mesh;
+}
+
+MeshBuilder make_gate(const Palette& palette) {
+    MeshBuilder mesh;
+    mesh.turned(1, [&](MeshBuilder& to_south) {
+        add_gate_foot(to_south, palette, false);
+        add_gate_top(to_south, palette);
+    });
+    return mesh;
+}
+
+MeshBuilder make_inner_gate(const Palette& palette) {
+    MeshBuilder mesh;
+    add_gate_foot(mesh, palette, true);
+    add_gate_top(mesh, palette);
     return mesh;
 }
 

@@ -73,6 +73,15 @@ void ExampleBuilder::add_axial(
     add_label(letters[1], {name + "_z", index, 1, weight});
 }
 
+void ExampleBuilder::set_weight(char letter, double weight) {
+    const auto found = label_of_.find(letter);
+    require(
+        found != label_of_.end(),
+        std::string("no piece has the letter ") + letter + " that a weight was given for"
+    );
+    example_.pieces[found->second].weight = weight;
+}
+
 void ExampleBuilder::add_floor(std::initializer_list<std::string_view> rows) {
     floors_.emplace_back(rows.begin(), rows.end());
 }

@@ -45,6 +45,9 @@ class ExampleBuilder {
         std::string_view letters, const std::string& name, MeshBuilder mesh, double weight = 1
     );
 
+    // Another weight for a piece that was added.
+    void set_weight(char letter, double weight);
+
     void add_floor(std::initializer_list<std::string_view> rows);
     void add_floor(std::vector<std::string> rows);
 
