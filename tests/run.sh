@@ -63,7 +63,7 @@ step format
 # shellcheck disable=SC2046
 must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 
-programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests)
+programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests golden_tests)
 build release all && {
   unit release "${programs[@]}"
   service release tests/layout tests/service
