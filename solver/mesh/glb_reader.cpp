@@ -1,5 +1,9 @@
 #include "solver/mesh/glb_reader.h"
 
+#include "solver/mesh/gltf_accessors.h"
+#include "solver/mesh/gltf_document.h"
+#include "solver/mesh/gltf_transform.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,302 +11,12 @@
 #include <cstring>
 #include <utility>
 
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
-
 // The idea: check what tinygltf does not before it sees the file (container lengths, depth of the
 // JSON) and after (every index and every range), then copy.
 
 namespace modelsynth {
 
 namespace {
-
-Error invalid(std::string message) {
-    return {ErrorCode::kInvalidArgument, "GLB: " + std::move(message), {}};
-}
-
-Error too_large(std::string message) {
-    return {ErrorCode::kTooLarge, "GLB: " + std::move(message), {}};
-}
-
-// A 3x4 matrix: columns for x, y, z and the translation.
-struct Transform {
-    std::array<std::array<double, 3>, 4> columns = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
-
-    [[nodiscard]] std::array<double, 3> turn(const std::array<double, 3>& v) const {
-        std::array<double, 3> result = {};
-        for (std::size_t row = 0; row < 3; ++row) {
-            for (std::size_t column = 0; column < 3; ++column) {
-                result[row] += columns[column][row] * v[column];
-            }
-        }
-        return result;
-    }
-
-    [[nodiscard]] std::array<double, 3> place(const std::array<double, 3>& v) const {
-        auto result = turn(v);
-        for (std::size_t row = 0; row < 3; ++row) {
-            result[row] += columns[3][row];
-        }
-        return result;
-    }
-
-    // First `inner`, then this.
-    [[nodiscard]] Transform after(const Transform& inner) const {
-        Transform result;
-        for (std::size_t column = 0; column < 3; ++column) {
-            result.columns[column] = turn(inner.columns[column]);
-        }
-        result.columns[3] = place(inner.columns[3]);
-        return result;
-    }
-
-    [[nodiscard]] double determinant() const {
-        const auto& [a, b, c, t] = columns;
-        return a[0] * (b[1] * c[2] - b[2] * c[1]) - b[0] * (a[1] * c[2] - a[2] * c[1]) +
-               c[0] * (a[1] * b[2] - a[2] * b[1]);
-    }
-};
-
-Transform local_transform(const tinygltf::Node& node) {
-    Transform result;
-    if (node.matrix.size() == 16) {
-        for (std::size_t column = 0; column < 4; ++column) {
-            for (std::size_t row = 0; row < 3; ++row) {
-                result.columns[column][row] = node.matrix[column * 4 + row];
-            }
-        }
-        return result;
-    }
-    if (node.rotation.size() == 4) {
-        const double x = node.rotation[0];
-        const double y = node.rotation[1];
-        const double z = node.rotation[2];
-        const double w = node.rotation[3];
-        result.columns[0] = {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
-        result.columns[1] = {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
-        result.columns[2] = {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
-    }
-    if (node.scale.size() == 3) {
-        for (std::size_t column = 0; column < 3; ++column) {
-            for (double& part : result.columns[column]) {
-                part *= node.scale[column];
-            }
-        }
-    }
-    if (node.translation.size() == 3) {
-        result.columns[3] = {node.translation[0], node.translation[1], node.translation[2]};
-    }
-    return result;
-}
-
-std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t offset) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-        value = value << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
-    }
-    return value;
-}
-
-// How deep the brackets of a JSON text nest, strings left out.
-std::size_t nesting_depth(std::span<const std::byte> json) {
-    std::size_t depth = 0;
-    std::size_t deepest = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = static_cast<char>(json[i]);
-        if (in_string) {
-            i += c == '\\' ? 1U : 0U;
-            in_string = c != '"';
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '{' || c == '[') {
-            deepest = std::max(deepest, ++depth);
-        } else if ((c == '}' || c == ']') && depth > 0) {
-            --depth;
-        }
-    }
-    return deepest;
-}
-
-Result<void> check_container(std::span<const std::byte> bytes, const GlbReadLimits& limits) {
-    if (bytes.size() > limits.bytes_max) {
-        return tl::unexpected(
-            too_large("larger than " + std::to_string(limits.bytes_max) + " bytes")
-        );
-    }
-    if (bytes.size() < 20 || std::memcmp(bytes.data(), "glTF", 4) != 0) {
-        return tl::unexpected(invalid("does not begin with a binary glTF header"));
-    }
-    if (read_u32(bytes, 4) != 2) {
-        return tl::unexpected(invalid("is not of version 2"));
-    }
-    if (read_u32(bytes, 8) != bytes.size()) {
-        return tl::unexpected(invalid(
-            "says it has " + std::to_string(read_u32(bytes, 8)) + " bytes and has " +
-            std::to_string(bytes.size())
-        ));
-    }
-    const std::size_t json_size = read_u32(bytes, 12);
-    if (json_size > bytes.size() - 20 || std::memcmp(bytes.data() + 16, "JSON", 4) != 0) {
-        return tl::unexpected(invalid("has no whole JSON chunk"));
-    }
-    if (nesting_depth(bytes.subspan(20, json_size)) > limits.json_depth_max) {
-        return tl::unexpected(
-            invalid("its JSON nests deeper than " + std::to_string(limits.json_depth_max))
-        );
-    }
-    const std::size_t binary_at = 20 + json_size;
-    if (binary_at == bytes.size()) {
-        return {};
-    }
-    if (bytes.size() - binary_at < 8 || read_u32(bytes, binary_at) > bytes.size() - binary_at - 8) {
-        return tl::unexpected(invalid("has no whole binary chunk"));
-    }
-    return {};
-}
-
-Result<tinygltf::Model> parse(std::span<const std::byte> bytes) {
-    tinygltf::TinyGLTF loader;
-    tinygltf::FsCallbacks no_files = {};
-    no_files.FileExists = [](const std::string&, void*) { return false; };
-    no_files.ExpandFilePath = [](const std::string&, void*) { return std::string(); };
-    no_files.ReadWholeFile =
-        [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; };
-    no_files.WriteWholeFile =
-        [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-            return false;
-        };
-    loader.SetFsCallbacks(no_files);
-    loader.SetImageLoader(
-        [](tinygltf::Image*,
-           int,
-           std::string*,
-           std::string*,
-           int,
-           int,
-           const unsigned char*,
-           int,
-           void*) { return true; },
-        nullptr
-    );
-    tinygltf::Model model;
-    std::string errors;
-    std::string warnings;
-    const bool loaded = loader.LoadBinaryFromMemory(
-        &model,
-        &errors,
-        &warnings,
-        reinterpret_cast<const unsigned char*>(bytes.data()),
-        static_cast<unsigned int>(bytes.size())
-    );
-    if (!loaded) {
-        if (errors.find("json.exception") != std::string::npos) {
-            return tl::unexpected(invalid("its JSON is malformed"));
-        }
-        const std::string first_line = errors.substr(0, errors.find('\n'));
-        return tl::unexpected(invalid("cannot be read: " + first_line.substr(0, 200)));
-    }
-    return model;
-}
-
-// Reads numbers out of accessors, each access within its buffer.
-class AccessorReader {
-  public:
-    AccessorReader(const tinygltf::Model& model, std::size_t vertices_max)
-        : model_(model), vertices_left_(vertices_max) {}
-
-    // The rows of an accessor as doubles, normalised integers as fractions.
-    Result<std::vector<std::array<double, 4>>> rows(int index, const std::string& what) {
-        if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size()) {
-            return tl::unexpected(invalid(what + " has no accessor"));
-        }
-        const tinygltf::Accessor& accessor = model_.accessors[static_cast<std::size_t>(index)];
-        const std::string name = what + " (accessor " + std::to_string(index) + ")";
-        if (accessor.sparse.isSparse) {
-            return tl::unexpected(invalid(name + " is sparse"));
-        }
-        const auto views = model_.bufferViews.size();
-        if (accessor.bufferView < 0 || static_cast<std::size_t>(accessor.bufferView) >= views) {
-            return tl::unexpected(invalid(name + " has no buffer view"));
-        }
-        const tinygltf::BufferView& view =
-            model_.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-        if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size()) {
-            return tl::unexpected(invalid(name + " has no buffer"));
-        }
-        const auto& data = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
-        const int component_bytes =
-            tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
-        const int components =
-            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-        if (component_bytes <= 0 || components <= 0 || components > 4) {
-            return tl::unexpected(invalid(name + " has an unknown type"));
-        }
-        const auto row_bytes = static_cast<std::size_t>(component_bytes * components);
-        const std::size_t stride = view.byteStride == 0 ? row_bytes : view.byteStride;
-        if (accessor.count > vertices_left_) {
-            return tl::unexpected(too_large("has more vertices than are taken"));
-        }
-        vertices_left_ -= accessor.count;
-        const bool view_fits =
-            view.byteOffset <= data.size() && view.byteLength <= data.size() - view.byteOffset;
-        const bool rows_fit =
-            view_fits && accessor.byteOffset <= view.byteLength && stride >= row_bytes &&
-            accessor.count > 0 && row_bytes <= view.byteLength - accessor.byteOffset &&
-            (accessor.count - 1) <= (view.byteLength - accessor.byteOffset - row_bytes) / stride;
-        if (!rows_fit) {
-            return tl::unexpected(invalid(name + " reaches beyond its buffer"));
-        }
-        std::vector<std::array<double, 4>> result(accessor.count);
-        const unsigned char* from = data.data() + view.byteOffset + accessor.byteOffset;
-        for (std::size_t row = 0; row < accessor.count; ++row) {
-            for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
-                result[row][c] = number(
-                    from + row * stride + c * static_cast<std::size_t>(component_bytes),
-                    accessor.componentType,
-                    accessor.normalized
-                );
-                if (!std::isfinite(result[row][c]) || std::fabs(result[row][c]) > 1e9) {
-                    return tl::unexpected(invalid(name + " has a number that is not usable"));
-                }
-            }
-        }
-        return result;
-    }
-
-  private:
-    template <class T>
-    static double read(const unsigned char* from, bool normalised) {
-        T value;
-        std::memcpy(&value, from, sizeof value);
-        const auto number = static_cast<double>(value);
-        return normalised ? number / static_cast<double>(std::numeric_limits<T>::max()) : number;
-    }
-
-    static double number(const unsigned char* from, int type, bool normalised) {
-        switch (type) {
-            case TINYGLTF_COMPONENT_TYPE_BYTE:
-                return read<std::int8_t>(from, normalised);
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-                return read<std::uint8_t>(from, normalised);
-            case TINYGLTF_COMPONENT_TYPE_SHORT:
-                return read<std::int16_t>(from, normalised);
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-                return read<std::uint16_t>(from, normalised);
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-                return read<std::uint32_t>(from, false);
-            case TINYGLTF_COMPONENT_TYPE_FLOAT:
-                return read<float>(from, false);
-            default:
-                return std::nan("");
-        }
-    }
-
-    const tinygltf::Model& model_;
-    std::size_t vertices_left_;
-};
 
 // Turns the nodes of a parsed file into a kit.
 class KitReader {
@@ -318,7 +32,7 @@ class KitReader {
         for (const tinygltf::Node& node : model_.nodes) {
             for (const int child : node.children) {
                 if (child < 0 || static_cast<std::size_t>(child) >= model_.nodes.size()) {
-                    return tl::unexpected(invalid("a node has a child that does not exist"));
+                    return tl::unexpected(invalid_glb("a node has a child that does not exist"));
                 }
                 is_child[static_cast<std::size_t>(child)] = true;
             }
@@ -332,7 +46,7 @@ class KitReader {
             }
         }
         if (std::find(visited_.begin(), visited_.end(), false) != visited_.end()) {
-            return tl::unexpected(invalid("its nodes form a cycle"));
+            return tl::unexpected(invalid_glb("its nodes form a cycle"));
         }
         return std::move(kit_);
     }
@@ -344,7 +58,7 @@ class KitReader {
             if (surface.baseColorTexture.index >= 0 ||
                 surface.metallicRoughnessTexture.index >= 0 || source.normalTexture.index >= 0 ||
                 source.emissiveTexture.index >= 0 || source.occlusionTexture.index >= 0) {
-                return tl::unexpected(invalid(
+                return tl::unexpected(invalid_glb(
                     "material \"" + source.name + "\" has a texture; only plain colours are taken"
                 ));
             }
@@ -392,7 +106,7 @@ class KitReader {
             const Step step = steps.back();
             steps.pop_back();
             if (visited_[step.node]) {
-                return tl::unexpected(invalid("a node is the child of two others"));
+                return tl::unexpected(invalid_glb("a node is the child of two others"));
             }
             visited_[step.node] = true;
             const tinygltf::Node& node = model_.nodes[step.node];
@@ -408,7 +122,7 @@ class KitReader {
                 target = mesh_named(step.name);
             } else if (target < 0 && node.mesh >= 0) {
                 if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
-                    return tl::unexpected(invalid("a node has a mesh that does not exist"));
+                    return tl::unexpected(invalid_glb("a node has a mesh that does not exist"));
                 }
                 const std::string& mesh_name =
                     model_.meshes[static_cast<std::size_t>(node.mesh)].name;
@@ -439,7 +153,7 @@ class KitReader {
 
     Result<void> read_mesh(int index, const Transform& transform, int target) {
         if (static_cast<std::size_t>(index) >= model_.meshes.size()) {
-            return tl::unexpected(invalid("a node has a mesh that does not exist"));
+            return tl::unexpected(invalid_glb("a node has a mesh that does not exist"));
         }
         for (const auto& source : model_.meshes[static_cast<std::size_t>(index)].primitives) {
             auto primitive = read_primitive(source, transform);
@@ -456,7 +170,7 @@ class KitReader {
         const tinygltf::Primitive& source, const Transform& transform
     ) {
         if (source.mode != TINYGLTF_MODE_TRIANGLES && source.mode != -1) {
-            return tl::unexpected(invalid("a primitive is not made of triangles"));
+            return tl::unexpected(invalid_glb("a primitive is not made of triangles"));
         }
         const auto attribute = [&source](const char* name) {
             const auto found = source.attributes.find(name);
@@ -468,7 +182,7 @@ class KitReader {
         }
         Primitive primitive;
         if (source.material >= static_cast<int>(model_.materials.size())) {
-            return tl::unexpected(invalid("a primitive has a material that does not exist"));
+            return tl::unexpected(invalid_glb("a primitive has a material that does not exist"));
         }
         primitive.material =
             source.material < 0 ? default_material() : static_cast<std::uint32_t>(source.material);
@@ -484,13 +198,13 @@ class KitReader {
             indices.clear();
             for (const auto& row : *rows) {
                 if (row[0] < 0 || row[0] >= static_cast<double>(positions->size())) {
-                    return tl::unexpected(invalid("an index is beyond the last vertex"));
+                    return tl::unexpected(invalid_glb("an index is beyond the last vertex"));
                 }
                 indices.push_back(static_cast<std::uint32_t>(row[0]));
             }
         }
         if (indices.size() % 3 != 0 || indices.empty()) {
-            return tl::unexpected(invalid("the corners of a primitive are no whole triangles"));
+            return tl::unexpected(invalid_glb("the corners of a primitive are no whole triangles"));
         }
         if (transform.determinant() < 0) {
             for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -520,7 +234,7 @@ class KitReader {
             auto colors = accessors_.rows(found->second, "COLOR_0");
             if (!colors || colors->size() != positions.size()) {
                 return tl::unexpected(
-                    colors ? invalid("COLOR_0 has another length than POSITION")
+                    colors ? invalid_glb("COLOR_0 has another length than POSITION")
                            : std::move(colors.error())
                 );
             }
@@ -539,7 +253,7 @@ class KitReader {
         auto normals = accessors_.rows(found->second, "NORMAL");
         if (!normals || normals->size() != positions.size()) {
             return tl::unexpected(
-                normals ? invalid("NORMAL has another length than POSITION")
+                normals ? invalid_glb("NORMAL has another length than POSITION")
                         : std::move(normals.error())
             );
         }
@@ -590,21 +304,18 @@ class KitReader {
 }  // namespace
 
 Result<Kit> read_glb(std::span<const std::byte> bytes, const GlbReadLimits& limits) {
-    if (auto fine = check_container(bytes, limits); !fine) {
-        return tl::unexpected(std::move(fine.error()));
-    }
-    auto model = parse(bytes);
+    auto model = parse_glb(bytes, limits);
     if (!model) {
         return tl::unexpected(std::move(model.error()));
     }
     if (!model->extensionsRequired.empty()) {
-        return tl::unexpected(invalid(
+        return tl::unexpected(invalid_glb(
             "requires the extension " + model->extensionsRequired.front() + ", which is not taken"
         ));
     }
     if (model->nodes.size() > limits.nodes_max) {
         return tl::unexpected(
-            too_large("has more than " + std::to_string(limits.nodes_max) + " nodes")
+            too_large_glb("has more than " + std::to_string(limits.nodes_max) + " nodes")
         );
     }
     return KitReader(*model, limits).read();

@@ -1,18 +1,17 @@
 #include "solver/mesh/glb_writer.h"
 
+#include "solver/mesh/gltf_buffer.h"
+#include "solver/mesh/gltf_nodes.h"
+#include "solver/mesh/turn.h"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <map>
 #include <sstream>
 #include <tuple>
 #include <utility>
 #include <vector>
-
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
 
 // The idea: tinygltf writes everything whose number does not grow with the model - meshes,
 // materials, accessors. Nodes are written here as text and put into its JSON chunk, because
@@ -26,263 +25,12 @@ namespace {
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 
-Vec3 turned(const Vec3& v, std::uint8_t quarter_turns) {
-    switch (quarter_turns % 4) {
-        case 1:
-            return {v.z, v.y, -v.x};
-        case 2:
-            return {-v.x, v.y, -v.z};
-        case 3:
-            return {-v.z, v.y, v.x};
-        default:
-            return v;
-    }
-}
-
 Vec3 moved(const Vec3& v, const Vec3& offset) {
     return {v.x + offset.x, v.y + offset.y, v.z + offset.z};
 }
 
-// Text of the nodes array.
-class NodeWriter {
-  public:
-    // Starts a node and returns its number.
-    std::uint32_t begin() {
-        text_ += count_ == 0 ? "{" : ",{";
-        first_ = true;
-        return count_++;
-    }
-
-    void end() { text_ += '}'; }
-
-    void key(const char* name) {
-        text_ += first_ ? "\"" : ",\"";
-        text_ += name;
-        text_ += "\":";
-        first_ = false;
-    }
-
-    void raw(const char* text) { text_ += text; }
-
-    template <class Number>
-    void number(Number value) {
-        std::array<char, 32> digits;
-        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-        text_.append(digits.data(), end);
-    }
-
-    void vector(const Vec3& v) {
-        text_ += '[';
-        number(v.x);
-        text_ += ',';
-        number(v.y);
-        text_ += ',';
-        number(v.z);
-        text_ += ']';
-    }
-
-    void string(const std::string& value) { text_ += quoted(value); }
-
-    void rotation(std::uint8_t quarter_turns) {
-        static constexpr std::array<const char*, 4> kQuaternions = {
-            "[0,0,0,1]",
-            "[0,0.70710678,0,0.70710678]",
-            "[0,1,0,0]",
-            "[0,-0.70710678,0,0.70710678]"};
-        key("rotation");
-        raw(kQuaternions[quarter_turns % 4]);
-    }
-
-    void range(std::uint32_t first, std::uint32_t count) {
-        text_ += '[';
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (i > 0) {
-                text_ += ',';
-            }
-            number(first + i);
-        }
-        text_ += ']';
-    }
-
-    void list(const std::vector<std::uint32_t>& values) {
-        text_ += '[';
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (i > 0) {
-                text_ += ',';
-            }
-            number(values[i]);
-        }
-        text_ += ']';
-    }
-
-    [[nodiscard]] std::size_t bytes() const { return text_.size(); }
-
-    [[nodiscard]] std::uint32_t count() const { return count_; }
-
-    [[nodiscard]] std::string take() { return std::move(text_); }
-
-    static std::string quoted(const std::string& value) {
-        std::string text = "\"";
-        for (const char c : value) {
-            const auto byte = static_cast<unsigned char>(c);
-            if (c == '"' || c == '\\') {
-                text += '\\';
-                text += c;
-            } else if (byte < 0x20) {
-                static constexpr const char* kHex = "0123456789abcdef";
-                text += "\\u00";
-                text += kHex[byte >> 4];
-                text += kHex[byte & 15];
-            } else {
-                text += c;
-            }
-        }
-        return text + '"';
-    }
-
-  private:
-    std::string text_;
-    std::uint32_t count_ = 0;
-    bool first_ = true;
-};
-
-// Bytes of the binary chunk and the tinygltf views and accessors over them.
-class BufferWriter {
-  public:
-    explicit BufferWriter(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
-
-    int positions(const std::vector<Vec3>& values) {
-        const int accessor =
-            add(values.data(), values.size(), sizeof(Vec3), TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-        set_bounds(accessor, values);
-        return accessor;
-    }
-
-    int normals(const std::vector<Vec3>& values) {
-        const int accessor =
-            add(values.data(), values.size(), sizeof(Vec3), TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-        return accessor;
-    }
-
-    // Vertex colours times the material's colour, RGB as RGBA in 16 bits each: some readers (VTK)
-    // take vertex colours in place of the material's instead of multiplying them, and eight
-    // linear bits are too few for dark colours.
-    int colors(const std::vector<std::array<std::uint8_t, 3>>& values, const Color& base) {
-        const auto part = [](std::uint8_t value, float factor) {
-            return static_cast<std::uint16_t>(std::lround(double{factor} * value * 257.0));
-        };
-        std::vector<std::uint16_t> parts;
-        parts.reserve(values.size() * 4);
-        for (const auto& color : values) {
-            parts.insert(
-                parts.end(),
-                {part(color[0], base.r), part(color[1], base.g), part(color[2], base.b), 65535}
-            );
-        }
-        const int accessor = add(parts.data(), values.size(), 8, TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
-        model_.accessors.back().normalized = true;
-        return accessor;
-    }
-
-    int indices(const std::vector<std::uint32_t>& values, std::size_t vertex_count) {
-        if (vertex_count > 65535) {
-            const int accessor =
-                add(values.data(),
-                    values.size(),
-                    sizeof(std::uint32_t),
-                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-            describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
-            return accessor;
-        }
-        const std::vector<std::uint16_t> narrow(values.begin(), values.end());
-        const int accessor =
-            add(narrow.data(),
-                narrow.size(),
-                sizeof(std::uint16_t),
-                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
-        return accessor;
-    }
-
-    // Instance attributes: one view for all, without a target, since a view and bounds for each
-    // would weigh more than the numbers themselves. Call it last, and add nothing after it.
-    int translations(const std::vector<Vec3>& values) {
-        if (translations_view_ < 0) {
-            translations_view_ = static_cast<int>(model_.bufferViews.size());
-            tinygltf::BufferView view;
-            view.buffer = 0;
-            view.byteOffset = data().size();
-            model_.bufferViews.push_back(std::move(view));
-        }
-        auto& view = model_.bufferViews[static_cast<std::size_t>(translations_view_)];
-        tinygltf::Accessor accessor;
-        accessor.bufferView = translations_view_;
-        accessor.byteOffset = view.byteLength;
-        accessor.count = values.size();
-        accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-        accessor.type = TINYGLTF_TYPE_VEC3;
-        model_.accessors.push_back(std::move(accessor));
-        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-        data().insert(data().end(), bytes, bytes + values.size() * sizeof(Vec3));
-        view.byteLength += values.size() * sizeof(Vec3);
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    [[nodiscard]] std::size_t bytes() const { return data().size(); }
-
-  private:
-    int add(const void* values, std::size_t count, std::size_t stride, int target) {
-        const std::size_t offset = data().size();
-        const auto* bytes = static_cast<const unsigned char*>(values);
-        data().insert(data().end(), bytes, bytes + count * stride);
-        data().resize((data().size() + 3) / 4 * 4);
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = offset;
-        view.byteLength = count * stride;
-        view.target = target;
-        model_.bufferViews.push_back(std::move(view));
-        tinygltf::Accessor accessor;
-        accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
-        accessor.count = count;
-        model_.accessors.push_back(std::move(accessor));
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    void describe(int accessor, int component_type, int type) {
-        auto& described = model_.accessors[static_cast<std::size_t>(accessor)];
-        described.componentType = component_type;
-        described.type = type;
-    }
-
-    void set_bounds(int accessor, const std::vector<Vec3>& values) {
-        Vec3 low = values.front();
-        Vec3 high = low;
-        for (const Vec3& v : values) {
-            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-        }
-        const auto widen = [](const Vec3& v) {
-            return std::vector<double>{double{v.x}, double{v.y}, double{v.z}};
-        };
-        auto& described = model_.accessors[static_cast<std::size_t>(accessor)];
-        described.minValues = widen(low);
-        described.maxValues = widen(high);
-    }
-
-    [[nodiscard]] std::vector<unsigned char>& data() { return model_.buffers[0].data; }
-
-    [[nodiscard]] const std::vector<unsigned char>& data() const { return model_.buffers[0].data; }
-
-    tinygltf::Model& model_;
-    int translations_view_ = -1;
-};
-
 tinygltf::Primitive write_primitive(
-    const Primitive& primitive, const Kit& kit, int material, BufferWriter& buffer
+    const Primitive& primitive, const Kit& kit, int material, GltfBuffer& buffer
 ) {
     tinygltf::Primitive written;
     written.mode = TINYGLTF_MODE_TRIANGLES;
@@ -342,9 +90,9 @@ struct Document {
 
     const Scene& scene;
     tinygltf::Model model;
-    BufferWriter buffer;
+    GltfBuffer buffer;
     MaterialWriter materials;
-    NodeWriter nodes;
+    GltfNodes nodes;
     std::vector<std::uint32_t> roots;
 };
 
@@ -406,9 +154,9 @@ void write_nodes(Document& document, bool named) {
     const std::vector<int> mesh_numbers = write_meshes(document);
     std::vector<std::string> names;
     for (const std::string& name : document.scene.names) {
-        names.push_back(NodeWriter::quoted(name));
+        names.push_back(GltfNodes::quoted(name));
     }
-    NodeWriter& nodes = document.nodes;
+    GltfNodes& nodes = document.nodes;
     for (const SceneGroup& group : document.scene.groups) {
         const std::uint32_t first = nodes.count();
         for (const Instance& instance : group.instances) {
@@ -441,7 +189,7 @@ void write_instanced(Document& document) {
     // Only translations are instanced. The node carries the turn, so a translation is given in
     // the node's frame, turned back.
     using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint8_t>;  // name, mesh, turns
-    NodeWriter& nodes = document.nodes;
+    GltfNodes& nodes = document.nodes;
     bool any = false;
     for (const SceneGroup& group : document.scene.groups) {
         std::map<Key, std::vector<Vec3>> translations;
@@ -545,7 +293,7 @@ Result<std::string> assemble(Document& document, std::size_t bytes_max) {
             "the model would be larger than " + std::to_string(bytes_max) + " bytes",
             {}});
     };
-    NodeWriter scenes;
+    GltfNodes scenes;
     scenes.begin();
     if (!document.roots.empty()) {
         scenes.key("nodes");

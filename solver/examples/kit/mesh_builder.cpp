@@ -1,6 +1,7 @@
 #include "solver/examples/kit/mesh_builder.h"
 
 #include "solver/core/random.h"
+#include "solver/mesh/turn.h"
 
 #include <algorithm>
 #include <array>
@@ -31,19 +32,6 @@ Vec3 normalised(const Vec3& v) {
 
 float to_linear(float value) {
     return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
-}
-
-Vec3 quarter_turned(const Vec3& v, int turns) {
-    switch (((turns % 4) + 4) % 4) {
-        case 1:
-            return {v.z, v.y, -v.x};
-        case 2:
-            return {-v.x, v.y, -v.z};
-        case 3:
-            return {-v.z, v.y, v.x};
-        default:
-            return v;
-    }
 }
 
 // Coordinates are rounded to a grid, so that what meets in theory meets to the bit, and so that
@@ -411,7 +399,9 @@ MeshBuilder& MeshBuilder::transformed(
 }
 
 MeshBuilder& MeshBuilder::turned(int quarter_turns, const std::function<void(MeshBuilder&)>& make) {
-    const auto turn = [quarter_turns](const Vec3& v) { return quarter_turned(v, quarter_turns); };
+    const auto turn = [quarter_turns](const Vec3& v) {
+        return modelsynth::turned(v, quarter_turns);
+    };
     return transformed(turn, turn, false, make);
 }
 
