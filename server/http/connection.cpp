@@ -1,8 +1,9 @@
 #include "server/http/connection.h"
 
-#include "proto/job.h"
+#include "proto/problem.h"
 #include "server/http/head_check.h"
 #include "server/stream/event_cursor.h"
+#include "server/stream/event_stream.h"
 #include "server/stream/on_pool.h"
 #include "server/stream/websocket.h"
 
@@ -435,15 +436,6 @@ class Connection {
         co_return true;
     }
 
-    static std::string sse_text(const EventPage& page) {
-        std::string text;
-        for (const Event& event : page.events) {
-            text += "id: " + std::to_string(event.seq) + "\nevent: " + event.type + "\ndata: " +
-                    proto::event_json(event.seq, event.type, event.time, event.fields) + "\n\n";
-        }
-        return text;
-    }
-
     // Text as a chunk, or as it is for HTTP/1.0, whose stream ends with the connection.
     net::awaitable<bool> write_chunk(std::string text, const Exchange& exchange) {
         if (exchange.version >= 11) {
@@ -453,6 +445,26 @@ class Connection {
         }
         co_return co_await write_bytes(text);
     }
+
+    // The connection as the place where an event stream goes.
+    class Sink final : public EventSink {
+      public:
+        Sink(Connection& connection, const Exchange& exchange)
+            : connection_(connection), exchange_(exchange) {}
+
+        net::awaitable<bool> write(std::string text) override {
+            return connection_.write_chunk(std::move(text), exchange_);
+        }
+
+        bool has_gone() override {
+            connection_.closed_ = connection_.closed_ || connection_.peer_has_closed();
+            return connection_.closed_;
+        }
+
+      private:
+        Connection& connection_;
+        const Exchange& exchange_;
+    };
 
     net::awaitable<void> write_events(
         Response& response, const EventStreamBody& body, Exchange& exchange
@@ -465,10 +477,6 @@ class Connection {
         if (!co_await write_bytes(head) || exchange.request.method == "HEAD") {
             co_return;
         }
-        const std::string hello = "retry: 2000\n\n";
-        if (!co_await write_chunk(hello, exchange)) {
-            co_return;
-        }
         EventCursor cursor(
             context_.api->service().events(),
             *context_.pool,
@@ -476,31 +484,9 @@ class Connection {
             body.job_id,
             body.after
         );
-        constexpr auto kHeartbeat = std::chrono::seconds(15);
-        auto last_written = std::chrono::steady_clock::now();
-        for (;;) {
-            constexpr auto kWait = std::chrono::milliseconds(500);
-            const auto batch = co_await cursor.next(kWait);
-            const bool quiet = std::chrono::steady_clock::now() - last_written > kHeartbeat;
-            std::string text = sse_text(batch.page);
-            if (text.empty() && quiet) {
-                text = ": still here\n\n";
-            }
-            if (!text.empty()) {
-                if (!co_await write_chunk(std::move(text), exchange)) {
-                    co_return;
-                }
-                last_written = std::chrono::steady_clock::now();
-            }
-            if (batch.gone || batch.finished || context_.counters->draining) {
-                break;
-            }
-            if (peer_has_closed()) {
-                closed_ = true;
-                co_return;
-            }
-        }
-        if (exchange.version >= 11) {
+        Sink sink(*this, exchange);
+        if (co_await write_event_stream(sink, cursor, context_.counters->draining) &&
+            exchange.version >= 11) {
             static constexpr std::string_view kLastChunk = "0\r\n\r\n";
             co_await write_bytes(kLastChunk);
         }

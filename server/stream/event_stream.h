@@ -1,0 +1,31 @@
+#pragma once
+
+#include "server/stream/event_cursor.h"
+
+#include <boost/asio/awaitable.hpp>
+
+#include <atomic>
+#include <string>
+
+namespace modelsynth::server {
+
+// Where the text of an event stream goes.
+class EventSink {
+  public:
+    virtual ~EventSink() = default;
+
+    // False when the client is gone.
+    [[nodiscard]] virtual net::awaitable<bool> write(std::string text) = 0;
+
+    // Whether the client has gone, as far as one sees without writing.
+    [[nodiscard]] virtual bool has_gone() = 0;
+};
+
+// A job's log as Server-Sent Events from the cursor on: an id, a type and the event's JSON each, a
+// comment now and then in a silence. True when it came to its end: after the last event there will
+// be, when the job was deleted or the server drains. False when the client is gone.
+[[nodiscard]] net::awaitable<bool> write_event_stream(
+    EventSink& sink, EventCursor& cursor, const std::atomic<bool>& draining
+);
+
+}  // namespace modelsynth::server
