@@ -65,9 +65,9 @@ bool is_one_of(char letter, std::string_view letters) {
     return letters.find(letter) != std::string_view::npos;
 }
 
-bool is_street(char use) { return is_one_of(use, "#=zk"); }
+bool is_street(char use) { return use == '#'; }
 
-bool is_lawn(char use) { return is_one_of(use, "gTSO"); }
+bool is_lane(char use) { return is_one_of(use, ":o"); }
 
 bool is_brick(char use) { return use >= 'A' && use <= 'H'; }
 
@@ -75,24 +75,24 @@ bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use); }
 
 bool is_house(char use) { return use >= 'a' && use <= 'c'; }
 
-// The plan in its four turns.
+constexpr int kTowerStoreys = 4;
+
+// The plan in its four turns about a street crossing.
 class Plan {
   public:
     explicit Plan(const std::vector<std::string_view>& quarter)
-        : size_(2 * static_cast<int>(quarter.size())) {
+        : size_(2 * static_cast<int>(quarter.size()) + 1),
+          uses_(
+              static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), '#')
+          ) {
         const auto n = static_cast<int>(quarter.size());
-        uses_.assign(
-            static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), ' ')
-        );
         for (int z = 0; z < n; ++z) {
-            check(
-                quarter[static_cast<std::size_t>(z)].size() == quarter.size(),
-                "a city plan that is not square"
-            );
-            for (int x = 0; x < n; ++x) {
+            const std::string_view row = quarter[static_cast<std::size_t>(z)];
+            check(row.size() == quarter.size() + 1, "a city plan that is not one wider than deep");
+            for (int x = 0; x <= n; ++x) {
                 Place place = {x, z};
                 for (int turn = 0; turn < kSideCount; ++turn) {
-                    set(place, quarter[static_cast<std::size_t>(z)][static_cast<std::size_t>(x)]);
+                    set(place, row[static_cast<std::size_t>(x)]);
                     place = {size_ - 1 - place.z, place.x};
                 }
             }
@@ -105,10 +105,10 @@ class Plan {
         return at.x >= 0 && at.x < size_ && at.z >= 0 && at.z < size_;
     }
 
-    // What stands at a place; paving outside.
+    // What stands at a place; nothing outside.
     [[nodiscard]] char use(const Place& at) const {
         return contains(at) ? uses_[static_cast<std::size_t>(at.z)][static_cast<std::size_t>(at.x)]
-                            : '.';
+                            : ' ';
     }
 
     [[nodiscard]] int storeys(const Place& at) const {
@@ -129,6 +129,16 @@ class Plan {
             }
         }
         return sides;
+    }
+
+    // ... and of those that have the same letter.
+    [[nodiscard]] Sides sides_of(const Place& at) const {
+        return sides_without(at, [&](const Place& next) { return use(next) == use(at); });
+    }
+
+    // The sides a street leaves by.
+    [[nodiscard]] Sides arms(const Place& at) const {
+        return sides_without(at, [&](const Place& next) { return !is_street(use(next)); });
     }
 
     // Cells of a house in a row through the place, along x (axis 0) or z (axis 1).
@@ -164,10 +174,29 @@ class LetterChoice {
         if (is_house(use)) {
             return house(place, floor);
         }
-        if (floor > 0) {
-            return letters_.open.air;
+        if (use == 't') {
+            return tower(place, floor);
         }
-        return is_street(use) ? street(place) : is_lawn(use) ? lawn(place) : paving(use);
+        if (floor > 0) {
+            return letters_.air;
+        }
+        switch (use) {
+            case '#':
+                return street(place);
+            case 'p':
+                return open_place(place, letters_.park);
+            case 'q':
+                return open_place(place, letters_.square);
+            case 'g':
+                return garden(place);
+            case 'v':
+                return verge(place);
+            case 'o':
+                return letters_.lane.court;
+            default:
+                check(use == ':', "a city plan with a letter that means nothing");
+                return lane(place);
+        }
     }
 
   private:
@@ -177,137 +206,173 @@ class LetterChoice {
         return scatter(seed, static_cast<std::uint32_t>(floor)) < share;
     }
 
-    [[nodiscard]] char paving(char use) const {
-        const OpenLetters& open = letters_.open;
-        switch (use) {
-            case 'l':
-                return open.lamp;
-            case 't':
-                return open.tree;
-            case 'n':
-                return open.bench;
-            case 'p':
-                return open.puddle;
-            default:
-                check(use == '.', "a city plan with a letter that means nothing");
-                return open.paving;
-        }
-    }
-
-    [[nodiscard]] char lawn(const Place& place) const {
-        const OpenLetters& open = letters_.open;
-        const Sides ends = plan_.sides_without(place, [this](const Place& next) {
-            return is_lawn(plan_.use(next));
-        });
-        if (ends.count() == 0) {
-            const char use = plan_.use(place);
-            return use == 'T'   ? open.lawn_tree
-                   : use == 'S' ? open.lawn_shrubs
-                   : use == 'O' ? open.fountain
-                                : open.lawn;
-        }
-        check(ends.count() == 1 || ends.is_corner(), "a lawn less than two cells wide");
-        return of_side(ends.count() == 1 ? open.lawn_edge : open.lawn_corner, ends.first());
-    }
-
-    // Streets run on where they meet the end of the plan.
     [[nodiscard]] char street(const Place& place) const {
         const StreetLetters& street = letters_.street;
-        const Sides ends = plan_.sides_without(place, [&](const Place& next) {
-            const Place behind = {2 * place.x - next.x, 2 * place.z - next.z};
-            return is_street(plan_.use(plan_.contains(next) ? next : behind));
-        });
-        if (ends.count() == 0) {
-            return street.crossing;
+        const Sides arms = plan_.arms(place);
+        switch (arms.count()) {
+            case 4:
+                return street.crossing;
+            case 3:
+                return of_side(street.fork, arms.first() + 3);
+            case 1:
+                return of_side(street.end, arms.first());
+            default:
+                check(arms.count() == 2, "a street that leads nowhere");
         }
-        if (ends.count() == 1) {
-            return of_side(street.fork, ends.first());
+        if (arms.is_corner()) {
+            return of_side(street.turn, arms.first());
         }
-        if (ends.is_corner()) {
-            return of_side(street.turn, ends.first() + 2);
+        const int side = arms.contains(0) ? 0 : 1;
+        for (const int towards : {side, side + 2}) {
+            if (plan_.arms(place.next(towards)).count() > 2) {
+                check(
+                    plan_.arms(place.next(towards + 2)).count() == 2,
+                    "junctions less than four cells apart in a city plan"
+                );
+                return of_side(street.zebra, towards);
+            }
         }
-        check(ends.count() == 2, "a street that ends");
-        const char use = plan_.use(place);
-        const Axial& letters = use == '='   ? street.lamps
-                               : use == 'z' ? street.zebra
-                               : use == 'k' ? street.car
-                                            : street.plain;
-        return letters[ends.contains(0) ? 1 : 0];
+        const Axial& letters = drawn(place, 4, 0.3F)    ? street.lamps
+                               : drawn(place, 5, 0.35F) ? street.car
+                                                        : street.plain;
+        return letters[static_cast<std::size_t>(side)];
     }
 
-    // Doors lead to where one can walk.
-    [[nodiscard]] bool has_door(const Place& place, int side) const {
-        const char front = plan_.use(place.next(side));
-        return (is_street(front) || is_one_of(front, ".p")) && drawn(place, 0, 0.4F);
+    // Lanes run on into lanes and courts; those that have none beside them, into streets.
+    [[nodiscard]] char lane(const Place& place) const {
+        Sides ways = plan_.sides_without(place, [this](const Place& next) {
+            return !is_lane(plan_.use(next));
+        });
+        if (ways.count() == 0) {
+            ways = plan_.arms(place);
+        }
+        const bool along_x = ways.contains(0) || ways.contains(2);
+        check(along_x != (ways.contains(1) || ways.contains(3)), "lanes that meet without a court");
+        const Axial& letters = drawn(place, 0, 0.35F) ? letters_.lane.tree : letters_.lane.plain;
+        return letters[along_x ? 0 : 1];
+    }
+
+    [[nodiscard]] char verge(const Place& place) const {
+        for (int side = 0; side < kSideCount; ++side) {
+            const char behind = plan_.use(place.next(side + 2));
+            if (is_street(plan_.use(place.next(side))) &&
+                (is_block(behind) || is_house(behind) || behind == 't')) {
+                return of_side(
+                    drawn(place, 0, 0.5F) ? letters_.lane.verge_tree : letters_.lane.verge_tables,
+                    side
+                );
+            }
+        }
+        check(false, "a verge that is not between a street and a building");
+        return 0;
+    }
+
+    [[nodiscard]] char open_place(const Place& place, const PlaceLetters& letters) const {
+        const Sides ends = plan_.sides_of(place);
+        if (ends.count() == 1) {
+            return of_side(letters.edge, ends.first());
+        }
+        if (ends.is_corner()) {
+            return of_side(letters.corner, ends.first());
+        }
+        check(ends.count() == 0, "a place that is not three cells deep");
+        const bool along_x = plan_.sides_of(place.next(0)).count() == 0 ||
+                             plan_.sides_of(place.next(2)).count() == 0;
+        const Axial& kind = (place.x + place.z) % 2 == 0 ? letters.middle : letters.feature;
+        return kind[along_x ? 0 : 1];
+    }
+
+    [[nodiscard]] char garden(const Place& place) const {
+        const auto house_side = [&](const Place& at) {
+            int side = 0;
+            while (side < kSideCount && !is_house(plan_.use(at.next(side)))) {
+                ++side;
+            }
+            return side;
+        };
+        const int house = house_side(place);
+        check(house < kSideCount, "a garden without a house");
+        const auto goes_on = [&](int side) {
+            const Place next = place.next(side);
+            return plan_.use(next) == 'g' && house_side(next) == house;
+        };
+        const int outward = house + 2;
+        const HouseLetters& letters = letters_.house;
+        return of_side(
+            !goes_on(outward + 1)   ? letters.garden_left
+            : !goes_on(outward + 3) ? letters.garden_right
+                                    : letters.garden,
+            outward
+        );
     }
 
     [[nodiscard]] char block(const Place& place, int floor) const {
         const int storeys = plan_.storeys(place);
         if (floor > storeys) {
-            return letters_.open.air;
+            return letters_.air;
         }
-        return floor == storeys ? block_roof(place, floor) : block_storey(place, floor);
-    }
-
-    [[nodiscard]] char block_storey(const Place& place, int floor) const {
         const BlockLetters& block = letters_.block;
-        const Sides faces = plan_.sides_without(place, [&](const Place& next) {
-            return plan_.storeys(next) > floor;
-        });
+        const Sides faces = plan_.sides_of(place);
         check(
             faces.count() < 2 || faces.is_corner(),
             "a block less than two cells wide in a city plan"
         );
         const int side = faces.first();
+        if (floor == storeys) {
+            return block_roof(place, faces);
+        }
+        const bool along_z = plan_.sides_of(place.next(1)).count() == 0 ||
+                             plan_.sides_of(place.next(3)).count() == 0;
         if (faces.count() == 0) {
-            return floor == 0 ? block.ground_core : block.core;
+            return floor == 0 ? block.ground_core[along_z ? 1 : 0] : block.core;
         }
         if (floor == 0) {
             return of_side(
-                faces.count() == 2      ? block.ground_corner
-                : has_door(place, side) ? block.door
-                                        : block.shop,
+                faces.count() == 2       ? block.ground_corner
+                : drawn(place, 0, 0.35F) ? block.door
+                                         : block.shop,
                 side
             );
-        }
-        const auto meets_roof = [&](int towards) {
-            return faces.contains(towards) && plan_.storeys(place.next(towards)) == floor;
-        };
-        if (faces.count() == 1 && meets_roof(side)) {
-            return of_side(block.terrace, side);
-        }
-        if (meets_roof(side) || meets_roof(side + 1)) {
-            return meets_roof(side) ? of_side(block.terrace_left, side)
-                                    : of_side(block.terrace_right, side + 1);
         }
         const bool brick = is_brick(plan_.use(place));
         if (faces.count() == 2) {
             return of_side(brick ? block.brick_corner : block.corner, side);
         }
-        if (drawn(place, floor, 0.5F)) {
-            return of_side(brick ? block.lit_brick_wall : block.lit_wall, side);
+        if (drawn(place, floor, 0.4F)) {
+            return of_side(brick ? block.brick_balcony : block.balcony, side);
         }
         return of_side(brick ? block.brick_wall : block.wall, side);
     }
 
-    [[nodiscard]] char block_roof(const Place& place, int floor) const {
+    [[nodiscard]] char block_roof(const Place& place, const Sides& edges) const {
         const BlockLetters& block = letters_.block;
-        const Sides edges = plan_.sides_without(place, [&](const Place& next) {
-            return plan_.storeys(next) >= floor;
-        });
         if (edges.count() == 0) {
-            return drawn(place, 1, 0.55F)  ? block.roof
-                   : drawn(place, 2, 0.4F) ? block.roof_tank
-                   : drawn(place, 3, 0.5F) ? block.roof_mast
+            return drawn(place, 1, 0.4F)   ? block.roof
+                   : drawn(place, 2, 0.3F) ? block.roof_tank
+                   : drawn(place, 3, 0.5F) ? block.roof_garden
                                            : block.roof_light;
         }
-        const Turned& corner =
-            drawn(place, floor, 0.35F) ? block.parapet_tank : block.parapet_corner;
         return of_side(
-            edges.count() == 2          ? corner
-            : drawn(place, floor, 0.4F) ? block.parapet_stack
-                                        : block.parapet,
+            edges.count() == 2       ? block.parapet_corner
+            : drawn(place, 1, 0.35F) ? block.parapet_stack
+                                     : block.parapet,
             edges.first()
+        );
+    }
+
+    [[nodiscard]] char tower(const Place& place, int floor) const {
+        const Sides faces = plan_.sides_of(place);
+        check(faces.is_corner(), "a tower that is not two cells by two");
+        const TowerLetters& tower = letters_.tower;
+        if (floor > kTowerStoreys) {
+            return letters_.air;
+        }
+        return of_side(
+            floor == 0                   ? tower.ground
+            : floor < kTowerStoreys - 1  ? tower.shaft
+            : floor == kTowerStoreys - 1 ? tower.belfry
+                                         : tower.spire,
+            faces.first()
         );
     }
 
@@ -315,7 +380,7 @@ class LetterChoice {
         const HouseLetters& house = letters_.house;
         const int storeys = plan_.storeys(place);
         if (floor > storeys) {
-            return letters_.open.air;
+            return letters_.air;
         }
         const Sides faces = plan_.sides_without(place, [&](const Place& next) {
             return is_house(plan_.use(next));
@@ -336,12 +401,8 @@ class LetterChoice {
         if (floor > 0) {
             return of_side(is_corner ? house.corner : house.wall, side);
         }
-        return of_side(
-            is_corner               ? house.ground_corner
-            : has_door(place, side) ? house.door
-                                    : house.front,
-            side
-        );
+        const bool is_back = plan_.use(place.next(side)) == 'g';
+        return of_side(is_corner ? house.ground_corner : is_back ? house.back : house.front, side);
     }
 
     const Plan& plan_;

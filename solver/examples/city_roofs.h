@@ -9,9 +9,9 @@ namespace modelsynth::examples {
 // The flat roofs of blocks and what breaks their line against the sky. A roof fills the cell above
 // the highest storey. Sides are built facing east, corners facing east and north.
 
-enum class RoofPart : std::uint8_t { kNone, kTank, kMast, kLight };
+enum class RoofPart : std::uint8_t { kNone, kTank, kGarden, kLight };
 [[nodiscard]] MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part);
 [[nodiscard]] MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack);
-[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials, bool has_tank);
+[[nodiscard]] MeshBuilder make_parapet_corner(const CityMaterials& materials);
 
 }  // namespace modelsynth::examples
