@@ -14,6 +14,7 @@
 #include "solver/examples/example_builder.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -30,38 +31,45 @@ constexpr int kFloorCount = 10;
 std::vector<std::string_view> plan() {
     return {
         "##################",  //
-        "#aaa:444#bbbb:CCC#",  //
-        "#aaa:444#bbbb:CCC#",  //
-        "#ggg:444#gggg:CCC#",  //
+        "#aaa:444#bbbb:KKK#",  //
+        "#aaa:444#bbbb:KKK#",  //
+        "#ggg:444#gggg:KKK#",  //
         "#gggo:::##########",  //
         "#bbb:CCC#vvvv#777#",  //
-        "#bbb:CCC#2222#777#",  //
-        "#vvv:CCC#2222#777#",  //
-        "#########2222:777#",  //
+        "#bbb:CCC#MMMM#777#",  //
+        "#vvv:CCC#MMMM#777#",  //
+        "#########MMMM:777#",  //
         "#gcc#qqq#::::o:::#",  //
-        "#gcc#qqq#pppp:gaa#",  //
-        "#gcc#qqq#pppp:gaa#",  //
-        "#gcc#qqq#pppp:gaa#",  //
-        "#gcc#666######gaa#",  //
-        "#:::#666#DDDD#gaa#",  //
-        "#vtt#666#DDDD#gaa#",  //
-        "#vtt#666#DDDD#gaa#",  //
+        "#gcc#qqq#pppp:gbb#",  //
+        "#gcc#qqq#pppp:gbb#",  //
+        "#gcc#qqq#pppp:gbb#",  //
+        "#gcc#333######gbb#",  //
+        "#:::#333#DDDD#gbb#",  //
+        "#vtt#333#DDDD#gbb#",  //
+        "#vtt#333#DDDD#gbb#",  //
     };
 }
 
 CityMaterials add_materials(ExampleBuilder& builder) {
     CityMaterials m;
-    m.asphalt = builder.add_material({"asphalt", srgb(0x8F939B), 0, 0.9F});
-    m.paving = builder.add_material({"paving", srgb(0xE2D7C4), 0, 0.85F});
-    m.stone = builder.add_material({"stone", srgb(0xF0E2C6), 0, 0.85F});
-    m.plaster = builder.add_material({"plaster", srgb(0xF4EFE6), 0, 0.9F});
-    m.brick = builder.add_material({"brick", srgb(0xD0765A), 0, 0.9F});
-    m.tile = builder.add_material({"tile", srgb(0xDE7B4C), 0, 0.8F});
-    m.glass = builder.add_material({"glass", srgb(0x7FA9C6), 0, 0.3F});
-    m.glow = builder.add_material({"glow", srgb(0xFFDF9E), 0, 0.6F, srgb(0x4A3C22)});
-    m.leaf = builder.add_material({"leaf", srgb(0x93C455), 0, 0.9F});
-    m.accent = builder.add_material({"accent", srgb(0x2FA0B0), 0, 0.7F});
-    m.iron = builder.add_material({"iron", srgb(0x5C6670), 0, 0.7F});
+    const auto add = [&](const char* name, std::uint32_t hex, float roughness) {
+        return builder.add_material({name, srgb(hex), 0, roughness});
+    };
+    m.asphalt = add("asphalt", 0xABAFB6, 0.9F);
+    m.paving = add("paving", 0xEBDFCB, 0.85F);
+    m.stone = add("stone", 0xF6E7CB, 0.85F);
+    m.plaster = add("plaster", 0xF7F1E4, 0.9F);
+    m.ochre = add("ochre", 0xF7CB80, 0.9F);
+    m.mint = add("mint", 0xC2E3D2, 0.9F);
+    m.brick = add("brick", 0xE48C6C, 0.9F);
+    m.wood = add("wood", 0x9A6B48, 0.9F);
+    m.tile = add("tile", 0xF48C55, 0.8F);
+    m.slate = add("slate", 0x9DBBD6, 0.8F);
+    m.glass = add("glass", 0x95C4E4, 0.3F);
+    m.leaf = add("leaf", 0xA8D65E, 0.9F);
+    m.accent = add("accent", 0x38AABB, 0.7F);
+    m.iron = add("iron", 0x68727C, 0.7F);
+    m.glow = builder.add_material({"glow", srgb(0xFFDF9E), 0, 0.6F, srgb(0x6A5630)});
     return m;
 }
 
@@ -153,16 +161,17 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     block.door = add.turned("block_door", make_block_door(m));
     block.ground_corner = add.turned("shop_corner", make_shop_corner(m));
     block.ground_core = add.axial("ground_core", make_core(m));
-    block.wall = add.turned("block_wall", make_block_wall(m, false));
-    block.balcony = add.turned("block_balcony", make_block_wall(m, true));
-    block.corner = add.turned("block_corner", make_block_corner(m));
-    block.brick_wall = add.turned("loft_wall", make_loft_wall(m, false));
-    block.brick_balcony = add.turned("loft_balcony", make_loft_wall(m, true));
+    block.wall = add.turned("block_wall", make_block_wall(m, m.stone, false));
+    block.balcony = add.turned("block_balcony", make_block_wall(m, m.stone, true));
+    block.corner = add.turned("block_corner", make_block_corner(m, m.stone));
+    block.mint_wall = add.turned("mint_wall", make_block_wall(m, m.mint, false));
+    block.mint_corner = add.turned("mint_corner", make_block_corner(m, m.mint));
+    block.brick_wall = add.turned("loft_wall", make_loft_wall(m));
     block.brick_corner = add.turned("loft_corner", make_loft_corner(m));
     block.core = add.single("core", make_core(m));
-    block.parapet = add.turned("parapet", make_parapet(m, false));
-    block.parapet_corner = add.turned("parapet_corner", make_parapet_corner(m));
-    block.parapet_stack = add.turned("parapet_stack", make_parapet(m, true));
+    block.mansard = add.turned("mansard", make_mansard(m, false));
+    block.mansard_corner = add.turned("mansard_corner", make_mansard_corner(m));
+    block.mansard_dormer = add.turned("mansard_dormer", make_mansard(m, true));
     block.roof = add.single("roof", make_flat_roof(m, RoofPart::kNone));
     block.roof_tank = add.single("roof_tank", make_flat_roof(m, RoofPart::kTank));
     block.roof_garden = add.single("roof_garden", make_flat_roof(m, RoofPart::kGarden));
@@ -178,8 +187,10 @@ HouseLetters add_houses(PieceAdder& add, const CityMaterials& m) {
     house.garden = add.turned("garden", make_garden(m, GardenEnd::kNone));
     house.garden_left = add.turned("garden_left", make_garden(m, GardenEnd::kLeft));
     house.garden_right = add.turned("garden_right", make_garden(m, GardenEnd::kRight));
-    house.wall = add.turned("house_wall", make_house_wall(m));
-    house.corner = add.turned("house_corner", make_house_corner(m));
+    house.wall = add.turned("house_wall", make_house_wall(m, HouseStorey::kMiddle));
+    house.corner = add.turned("house_corner", make_house_corner(m, HouseStorey::kMiddle));
+    house.timber_wall = add.turned("timber_wall", make_house_wall(m, HouseStorey::kTimber));
+    house.timber_corner = add.turned("timber_corner", make_house_corner(m, HouseStorey::kTimber));
     house.slope = add.turned("slope", make_slope(m, false));
     house.dormer = add.turned("slope_dormer", make_slope(m, true));
     house.gable_left = add.turned("gable_left", make_gable(m, true));
@@ -239,6 +250,12 @@ struct Tuning {
 constexpr Tuning kTunings[] = {
     {"street_turn_s", 0.02},
     {"street_end", 0.1},
+    {"street_end_e", 0.004},
+    {"street_end_s", 0.004},
+    {"mansard_corner_n", 0.8},
+    {"shop_corner_n", 0.6},
+    {"house_ground_corner_n", 1.5},
+    {"park_corner_n", 1.5},
 };
 
 void tune(discrete::Example& example) {

@@ -131,31 +131,27 @@ void add_storey_frame(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     add_band(mesh, 2.82F, kCityStorey, 0.16F, end);
 }
 
-void add_storey_front(
-    MeshBuilder& mesh, const CityMaterials& m, bool left_is_lit, bool right_is_lit, RightEnd end
-) {
+void add_storey_front(MeshBuilder& mesh, const CityMaterials& m, MaterialId wall, RightEnd end) {
     const std::array<Opening, 2> windows = {
-        {{-1.4F, -0.25F, 0.75F, 2.5F, left_is_lit}, {0.25F, 1.4F, 0.75F, 2.5F, right_is_lit}}};
-    add_wall(mesh, m, m.stone, kWhole, windows, 0.25F);
+        {{-1.4F, -0.25F, 0.75F, 2.5F, false}, {0.25F, 1.4F, 0.75F, 2.5F, false}}};
+    add_wall(mesh, m, wall, kWhole, windows, 0.25F);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, 0.25F, 2, 2);
     }
-    // Panels of slate between the storeys draw the eye upwards.
-    mesh.material(m.tile).tint(1);
+    // Panels between the storeys draw the eye upwards.
+    mesh.material(m.slate).tint(1);
     add_block(mesh, -1.4F, -0.25F, 0.12F, 0.56F, 0.05F);
     add_block(mesh, 0.25F, 1.4F, 0.12F, 0.56F, 0.05F);
     add_storey_frame(mesh, m, end);
 }
 
-// One wide window of twelve panes; the lit part is one of three, or all.
-void add_loft_front(
-    MeshBuilder& mesh, const CityMaterials& m, const std::array<bool, 3>& is_lit, RightEnd end
-) {
+// Three windows side by side.
+void add_loft_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     constexpr float kDepth = 0.22F;
     const std::array<Opening, 3> windows = {
-        {{-1.5F, -0.62F, 0.7F, 2.45F, is_lit[0]},
-         {-0.44F, 0.44F, 0.7F, 2.45F, is_lit[1]},
-         {0.62F, 1.5F, 0.7F, 2.45F, is_lit[2]}}};
+        {{-1.5F, -0.62F, 0.7F, 2.45F, false},
+         {-0.44F, 0.44F, 0.7F, 2.45F, false},
+         {0.62F, 1.5F, 0.7F, 2.45F, false}}};
     add_wall(mesh, m, m.brick, kWhole, windows, kDepth);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, kDepth, 2, 3);
@@ -231,43 +227,32 @@ MeshBuilder make_core(const CityMaterials& materials) {
     return mesh;
 }
 
-MeshBuilder make_block_wall(const CityMaterials& materials, bool has_balcony) {
+MeshBuilder make_block_wall(const CityMaterials& materials, MaterialId wall, bool has_balcony) {
     return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_storey_front(mesh, materials, false, false, end);
+        add_storey_front(mesh, materials, wall, end);
         if (has_balcony) {
             add_balcony(mesh, materials);
         }
     }));
 }
 
-MeshBuilder make_block_corner(const CityMaterials& materials) {
+MeshBuilder make_block_corner(const CityMaterials& materials, MaterialId wall) {
     return shaded_storey(make_corner(
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_storey_front(mesh, materials, false, false, end);
-        },
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_storey_front(mesh, materials, false, false, end);
-        }
+        [&](MeshBuilder& mesh, RightEnd end) { add_storey_front(mesh, materials, wall, end); },
+        [&](MeshBuilder& mesh, RightEnd end) { add_storey_front(mesh, materials, wall, end); }
     ));
 }
 
-MeshBuilder make_loft_wall(const CityMaterials& materials, bool has_balcony) {
+MeshBuilder make_loft_wall(const CityMaterials& materials) {
     return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_loft_front(mesh, materials, {false, false, false}, end);
-        if (has_balcony) {
-            add_balcony(mesh, materials);
-        }
+        add_loft_front(mesh, materials, end);
     }));
 }
 
 MeshBuilder make_loft_corner(const CityMaterials& materials) {
     return shaded_storey(make_corner(
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_loft_front(mesh, materials, {false, false, false}, end);
-        },
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_loft_front(mesh, materials, {false, false, false}, end);
-        }
+        [&](MeshBuilder& mesh, RightEnd end) { add_loft_front(mesh, materials, end); },
+        [&](MeshBuilder& mesh, RightEnd end) { add_loft_front(mesh, materials, end); }
     ));
 }
 

@@ -12,10 +12,12 @@ namespace modelsynth::examples {
 [[nodiscard]] MeshBuilder make_shop_corner(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_core(const CityMaterials& materials);
 
-[[nodiscard]] MeshBuilder make_block_wall(const CityMaterials& materials, bool has_balcony);
-[[nodiscard]] MeshBuilder make_block_corner(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_block_wall(
+    const CityMaterials& materials, MaterialId wall, bool has_balcony
+);
+[[nodiscard]] MeshBuilder make_block_corner(const CityMaterials& materials, MaterialId wall);
 // Brick between wide workshop windows, on the same ground floors and under the same roofs.
-[[nodiscard]] MeshBuilder make_loft_wall(const CityMaterials& materials, bool has_balcony);
+[[nodiscard]] MeshBuilder make_loft_wall(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_loft_corner(const CityMaterials& materials);
 
 }  // namespace modelsynth::examples

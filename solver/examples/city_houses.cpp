@@ -62,24 +62,51 @@ void add_house_bands(MeshBuilder& mesh, const CityMaterials& m, bool is_ground, 
     add_band(mesh, 2.82F, kCityStorey, 0.1F, end);
 }
 
-void add_two_windows(
-    MeshBuilder& mesh,
-    const CityMaterials& m,
-    bool is_ground,
-    bool left_is_lit,
-    bool right_is_lit,
-    RightEnd end
-) {
+// Posts, rails and braces about two windows.
+void add_timbers(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
+    constexpr float kReach = 0.05F;
+    mesh.material(m.wood).tint(1);
+    add_block(mesh, -kCityHalf, kCityHalf, 0.5F, 0.64F, kReach);
+    add_block(mesh, -kCityHalf, kCityHalf, 2.36F, 2.5F, kReach);
+    for (const float u : {-1.5F, -0.5F, 0.36F, 1.36F}) {
+        add_block(mesh, u, u + 0.14F, 0.12F, 2.82F, kReach);
+    }
+    for (const float u : {-kCityHalf, kCityHalf - 0.1F}) {
+        add_block(mesh, u, u + 0.1F, 0.12F, 2.82F, kReach);
+    }
+    for (const float way : {-1.0F, 1.0F}) {  // a brace on either side of the middle
+        const float z = kCityHalf + kReach;
+        const Vec3 foot0 = {way * 0.05F, 0.64F, z};
+        const Vec3 foot1 = {way * 0.22F, 0.64F, z};
+        const Vec3 head0 = {way * 0.18F, 2.36F, z};
+        const Vec3 head1 = {way * 0.35F, 2.36F, z};
+        if (way > 0) {
+            mesh.quad(foot0, foot1, head1, head0);
+        } else {
+            mesh.quad(foot1, foot0, head0, head1);
+        }
+    }
+    add_band(mesh, 0, 0.14F, 0.1F, end);
+}
+
+void add_two_windows(MeshBuilder& mesh, const CityMaterials& m, HouseStorey storey, RightEnd end) {
+    const bool is_ground = storey == HouseStorey::kGround;
+    const bool is_timber = storey == HouseStorey::kTimber;
     const float sill = is_ground ? 1.0F : 0.8F;
     const std::array<Opening, 2> windows = {
-        {{-1.35F, -0.55F, sill, 2.3F, left_is_lit}, {0.55F, 1.35F, sill, 2.3F, right_is_lit}}};
-    add_wall(mesh, m, m.brick, kWhole, windows, 0.2F);
+        {{-1.35F, -0.55F, sill, 2.3F, false}, {0.55F, 1.35F, sill, 2.3F, false}}};
+    add_wall(mesh, m, is_timber ? m.plaster : m.ochre, kWhole, windows, 0.2F);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, 0.2F, 2, 2);
-        add_lintel(mesh, m, window);
-        if (!is_ground) {
+        if (!is_timber) {
+            add_lintel(mesh, m, window);
+        }
+        if (storey == HouseStorey::kMiddle) {
             add_shutters(mesh, m, window);
         }
+    }
+    if (is_timber) {
+        add_timbers(mesh, m, end);
     }
     add_house_bands(mesh, m, is_ground, end);
 }
@@ -87,7 +114,7 @@ void add_two_windows(
 void add_door_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     const std::array<Opening, 2> openings = {
         {{-1.2F, -0.2F, 0.42F, 2.4F, true}, {0.55F, 1.35F, 1.0F, 2.3F, true}}};
-    add_wall(mesh, m, m.brick, kWhole, openings, 0.2F);
+    add_wall(mesh, m, m.ochre, kWhole, openings, 0.2F);
     add_window_bars(mesh, m, openings[1], 0.2F, 2, 2);
     add_lintel(mesh, m, openings[0]);
     add_lintel(mesh, m, openings[1]);
@@ -139,19 +166,19 @@ void add_courses(MeshBuilder& mesh, const CityMaterials& m, float u0, float u1) 
     mesh.material(m.iron).tint(0.89F);
     const float eaves_y = roof_y(kEaves);
     mesh.open_box({{u0, eaves_y - kSlab, kEaves}, {u1, eaves_y + 0.02F, kEaves + 0.12F}}, "SUD");
-    mesh.material(m.brick).tint(0.7F);
+    mesh.material(m.wood).tint(1);
     mesh.quad(
         {u0, eaves_y - kSlab, kCityHalf - 0.1F},
         {u1, eaves_y - kSlab, kCityHalf - 0.1F},
         {u1, eaves_y - kSlab, kEaves},
         {u0, eaves_y - kSlab, kEaves}
     );
-    mesh.material(m.brick).tint(0.83F);
+    mesh.material(m.plaster).tint(0.83F);
     mesh.open_box(
         {{u0, roof_y(kRidge) - 0.1F, kRidge}, {u1, roof_y(kRidge) + 0.1F, kRidge + 0.16F}}, "SU"
     );
     // The wall between the storey below and the slope.
-    mesh.material(m.brick).tint(0.89F);
+    mesh.material(m.plaster).tint(0.89F);
     mesh.quad(
         {u0, -0.2F, kCityHalf}, {u1, -0.2F, kCityHalf}, {u1, 0.2F, kCityHalf}, {u0, 0.2F, kCityHalf}
     );
@@ -163,10 +190,10 @@ void add_dormer(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kHalf = 0.75F;
     const float foot = roof_y(kFront);
     constexpr float kTop = 2.1F;
-    mesh.material(m.brick).tint(0.95F);
+    mesh.material(m.plaster).tint(0.95F);
     mesh.open_box({{-kHalf, foot - 0.1F, kBack}, {kHalf, kTop, kFront}}, "EWS");
     mesh.triangle({-kHalf, kTop, kFront}, {kHalf, kTop, kFront}, {0, kTop + 0.5F, kFront});
-    mesh.material(m.glow).tint(1);
+    mesh.material(m.glass).tint(1);
     mesh.open_box({{-0.42F, foot + 0.25F, kFront}, {0.42F, kTop - 0.1F, kFront + 0.01F}}, "S");
     mesh.material(m.stone).tint(0.95F);
     mesh.open_box({{-0.55F, foot + 0.1F, kFront}, {0.55F, foot + 0.25F, kFront + 0.12F}}, "SUDEW");
@@ -217,7 +244,7 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kHead = 1.7F;
     constexpr float kPane = kWall - 0.15F;
     const auto wall_at = [&](float z, float y) { return Vec3{kWall, y, z}; };
-    mesh.material(m.brick).tint(1);
+    mesh.material(m.plaster).tint(1);
     mesh.quad(
         wall_at(kCityHalf, -0.2F),
         wall_at(kJamb, -0.2F),
@@ -243,7 +270,7 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.quad(
         {kWall, kSill, kJamb}, {kPane, kSill, kJamb}, {kPane, kHead, kJamb}, {kWall, kHead, kJamb}
     );
-    mesh.material(m.glow).tint(1);
+    mesh.material(m.glass).tint(1);
     mesh.quad(
         {kPane, kSill, kJamb}, {kPane, kSill, kRidge}, {kPane, kHead, kRidge}, {kPane, kHead, kJamb}
     );
@@ -316,7 +343,7 @@ MeshBuilder shaded(MeshBuilder mesh, bool is_ground) {
 MeshBuilder make_house_front(const CityMaterials& materials) {
     return shaded(
         make_side([&](MeshBuilder& mesh, RightEnd end) {
-            add_two_windows(mesh, materials, true, true, false, end);
+            add_two_windows(mesh, materials, HouseStorey::kGround, end);
         }),
         true
     );
@@ -333,11 +360,11 @@ MeshBuilder make_house_ground_corner(const CityMaterials& materials) {
     return shaded(
         make_corner(
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, true, false, true, end);
+                add_two_windows(mesh, materials, HouseStorey::kGround, end);
                 add_quoins(mesh, materials, true, 0.5F);
             },
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, true, false, false, end);
+                add_two_windows(mesh, materials, HouseStorey::kGround, end);
                 add_quoins(mesh, materials, false, 0.5F);
             }
         ),
@@ -345,25 +372,29 @@ MeshBuilder make_house_ground_corner(const CityMaterials& materials) {
     );
 }
 
-MeshBuilder make_house_wall(const CityMaterials& materials) {
+MeshBuilder make_house_wall(const CityMaterials& materials, HouseStorey storey) {
     return shaded(
         make_side([&](MeshBuilder& mesh, RightEnd end) {
-            add_two_windows(mesh, materials, false, false, true, end);
+            add_two_windows(mesh, materials, storey, end);
         }),
         false
     );
 }
 
-MeshBuilder make_house_corner(const CityMaterials& materials) {
+MeshBuilder make_house_corner(const CityMaterials& materials, HouseStorey storey) {
     return shaded(
         make_corner(
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, false, false, false, end);
-                add_quoins(mesh, materials, true, 0.12F);
+                add_two_windows(mesh, materials, storey, end);
+                if (storey == HouseStorey::kMiddle) {
+                    add_quoins(mesh, materials, true, 0.12F);
+                }
             },
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, false, true, false, end);
-                add_quoins(mesh, materials, false, 0.12F);
+                add_two_windows(mesh, materials, storey, end);
+                if (storey == HouseStorey::kMiddle) {
+                    add_quoins(mesh, materials, false, 0.12F);
+                }
             }
         ),
         false

@@ -71,7 +71,9 @@ bool is_lane(char use) { return is_one_of(use, ":o"); }
 
 bool is_brick(char use) { return use >= 'A' && use <= 'H'; }
 
-bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use); }
+bool is_mint(char use) { return use >= 'J' && use <= 'Q'; }
+
+bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use) || is_mint(use); }
 
 bool is_house(char use) { return use >= 'a' && use <= 'c'; }
 
@@ -114,6 +116,7 @@ class Plan {
     [[nodiscard]] int storeys(const Place& at) const {
         const char use = this->use(at);
         return is_brick(use)   ? use - 'A' + 1
+               : is_mint(use)  ? use - 'J' + 1
                : is_block(use) ? use - '0'
                : is_house(use) ? use - 'a' + 1
                                : 0;
@@ -334,14 +337,16 @@ class LetterChoice {
                 side
             );
         }
-        const bool brick = is_brick(plan_.use(place));
-        if (faces.count() == 2) {
-            return of_side(brick ? block.brick_corner : block.corner, side);
+        const char use = plan_.use(place);
+        const bool is_corner = faces.count() == 2;
+        if (is_brick(use)) {
+            return of_side(is_corner ? block.brick_corner : block.brick_wall, side);
         }
-        if (drawn(place, floor, 0.4F)) {
-            return of_side(brick ? block.brick_balcony : block.balcony, side);
+        if (is_mint(use)) {
+            return of_side(is_corner ? block.mint_corner : block.mint_wall, side);
         }
-        return of_side(brick ? block.brick_wall : block.wall, side);
+        const Turned& wall = drawn(place, floor, 0.4F) ? block.balcony : block.wall;
+        return of_side(is_corner ? block.corner : wall, side);
     }
 
     [[nodiscard]] char block_roof(const Place& place, const Sides& edges) const {
@@ -353,9 +358,9 @@ class LetterChoice {
                                            : block.roof_light;
         }
         return of_side(
-            edges.count() == 2       ? block.parapet_corner
-            : drawn(place, 1, 0.35F) ? block.parapet_stack
-                                     : block.parapet,
+            edges.count() == 2      ? block.mansard_corner
+            : drawn(place, 1, 0.5F) ? block.mansard_dormer
+                                    : block.mansard,
             edges.first()
         );
     }
@@ -398,8 +403,11 @@ class LetterChoice {
             return first_is_slope ? of_side(house.gable_left, side)
                                   : of_side(house.gable_right, side + 1);
         }
-        if (floor > 0) {
+        if (floor == 1) {
             return of_side(is_corner ? house.corner : house.wall, side);
+        }
+        if (floor == 2) {
+            return of_side(is_corner ? house.timber_corner : house.timber_wall, side);
         }
         const bool is_back = plan_.use(place.next(side)) == 'g';
         return of_side(is_corner ? house.ground_corner : is_back ? house.back : house.front, side);

@@ -42,8 +42,8 @@ struct PlaceLetters {
     Axial feature{};
 };
 
-// Stone-faced blocks with flat roofs, three cells deep. The core on the ground has letters for the
-// two ways it can run, so that no block grows in both.
+// Stone-faced blocks under mansard roofs, three cells deep. The core on the ground has letters for
+// the two ways it can run, so that no block grows in both.
 struct BlockLetters {
     Turned shop{};
     Turned door{};
@@ -52,13 +52,14 @@ struct BlockLetters {
     Turned wall{};
     Turned balcony{};
     Turned corner{};
+    Turned mint_wall{};
+    Turned mint_corner{};
     Turned brick_wall{};
-    Turned brick_balcony{};
     Turned brick_corner{};
     char core = 0;
-    Turned parapet{};
-    Turned parapet_corner{};
-    Turned parapet_stack{};
+    Turned mansard{};
+    Turned mansard_corner{};
+    Turned mansard_dormer{};
     char roof = 0;
     char roof_tank = 0;
     char roof_garden = 0;
@@ -75,6 +76,8 @@ struct HouseLetters {
     Turned garden_right{};  // ... clockwise of it
     Turned wall{};
     Turned corner{};
+    Turned timber_wall{};  // the third storey
+    Turned timber_corner{};
     Turned slope{};
     Turned dormer{};
     Turned gable_left{};   // a slope that ends counter-clockwise of it
@@ -104,7 +107,7 @@ struct CityLetters {
 //   # street; what it is follows from the neighbours
 //   : lane, o court, v verge between a street and a building
 //   p park, q square; three cells deep
-//   1 ... 8 stone block of so many storeys, A ... H brick one, three cells deep
+//   1 ... 8 stone block of so many storeys, A ... H brick one, J ... Q mint one, three cells deep
 //   a b c house of 1, 2, 3 storeys, two cells deep; g its garden, one cell deep, on its back
 //   t clock tower, two cells by two
 // The plan is laid out four times, each a quarter turn on, about the cell south of its

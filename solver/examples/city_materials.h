@@ -4,14 +4,18 @@
 
 namespace modelsynth::examples {
 
-// The palette: cream, brick red and pastel plaster under terracotta on a sunny morning.
+// The palette: cream, ochre, mint and brick under terracotta and slate, on a sunny morning.
 struct CityMaterials {
     MaterialId asphalt = 0;
     MaterialId paving = 0;
     MaterialId stone = 0;
-    MaterialId plaster = 0;  // near white, tinted in pastels
-    MaterialId brick = 0;    // also wood, when tinted
+    MaterialId plaster = 0;
+    MaterialId ochre = 0;
+    MaterialId mint = 0;
+    MaterialId brick = 0;
+    MaterialId wood = 0;
     MaterialId tile = 0;
+    MaterialId slate = 0;
     MaterialId glass = 0;
     MaterialId glow = 0;
     MaterialId leaf = 0;

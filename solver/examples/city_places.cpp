@@ -34,7 +34,7 @@ void add_slabs(MeshBuilder& mesh, const CityMaterials& m, float warmth) {
 }
 
 void add_tree_pit(MeshBuilder& mesh, const CityMaterials& m, float scale) {
-    mesh.material(m.brick).tint(0.7F, 0.8F, 0.8F);
+    mesh.material(m.wood).tint(0.9F);
     mesh.open_box({{-0.6F, 0.1F, -0.6F}, {0.6F, kPavingTop + 0.03F, 0.6F}}, "EWSNU");
     add_tree(mesh, m, kPavingTop, scale);
 }
@@ -127,7 +127,7 @@ MeshBuilder make_verge(const CityMaterials& materials, bool has_tables) {
         add_table(mesh, materials, -0.3F, 0.95F);
     } else {
         add_tree_pit(mesh, materials, 0.9F);
-        mesh.material(materials.brick).tint(1, 0.8F, 0.6F);
+        mesh.material(materials.wood).tint(1);
         mesh.open_box({{-1.5F, 0.45F, -0.7F}, {-1.05F, 0.52F, 0.7F}}, "EWSNUD");
         mesh.material(materials.iron).tint(1);
         for (const float z : {-0.5F, 0.45F}) {
@@ -211,7 +211,7 @@ MeshBuilder make_garden(const CityMaterials& materials, GardenEnd end) {
     };
     switch (end) {
         case GardenEnd::kNone:
-            mesh.material(materials.brick).tint(0.75F, 0.7F, 0.65F);
+            mesh.material(materials.wood).tint(0.85F);
             mesh.open_box({{0.3F, kPavingTop, -1.2F}, {1.3F, 0.24F, 0.9F}}, "EWSNU");
             mesh.material(materials.leaf).tint(0.7F, 0.9F, 0.6F);
             for (const float z : {-0.9F, -0.3F, 0.3F}) {

@@ -57,7 +57,7 @@ void add_car(MeshBuilder& mesh, const CityMaterials& m, MaterialId paint) {
 }
 
 void add_tree(MeshBuilder& mesh, const CityMaterials& m, float foot, float scale) {
-    mesh.material(m.brick).tint(0.6F, 0.6F, 0.6F);
+    mesh.material(m.wood).tint(0.9F);
     const std::array<Point2, 4> trunk = {
         {{0.2F * scale, foot},
          {0.12F * scale, foot + 0.5F},
@@ -87,7 +87,7 @@ void add_bench(MeshBuilder& mesh, const CityMaterials& m) {
             seat.material(m.iron).tint(0.8F);
             seat.box({{0.85F, kPavingTop, -0.65F}, {1.25F, 0.5F, -0.57F}});
             seat.box({{0.85F, kPavingTop, 0.57F}, {1.25F, 0.5F, 0.65F}});
-            seat.material(m.brick).tint(0.8F);
+            seat.material(m.wood).tint(1);
             seat.box({{0.8F, 0.5F, -0.8F}, {1.02F, 0.56F, 0.8F}});
             seat.box({{1.06F, 0.5F, -0.8F}, {1.28F, 0.56F, 0.8F}});
         });
@@ -128,7 +128,7 @@ void add_table(MeshBuilder& mesh, const CityMaterials& m, float x, float z) {
         part.cylinder(0, 0, 0.38F, 0.68F, 0.74F, 8);
         part.material(m.accent).tint(1);
         part.cone(0, 0, 1.0F, 1.95F, 2.4F, 8);
-        part.material(m.brick).tint(1, 0.85F, 0.7F);
+        part.material(m.wood).tint(1);
         for (const float side : {-0.72F, 0.72F}) {
             part.open_box({{side - 0.17F, 0, -0.17F}, {side + 0.17F, 0.42F, 0.17F}}, "EWSNU");
         }
@@ -137,7 +137,7 @@ void add_table(MeshBuilder& mesh, const CityMaterials& m, float x, float z) {
 
 void add_stall(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kStripe = 0.5F;
-    mesh.material(m.brick).tint(1, 0.85F, 0.7F);
+    mesh.material(m.wood).tint(1);
     mesh.open_box({{-1.25F, kPavingTop, -0.7F}, {1.25F, 0.95F, 0.7F}}, "EWSNU");
     mesh.material(m.leaf).tint(1);
     mesh.open_box({{-1.15F, 0.95F, -0.6F}, {-0.4F, 1.1F, 0.6F}}, "EWSNU");
