@@ -60,13 +60,13 @@ CityMaterials add_materials(ExampleBuilder& builder) {
     m.stone = add("stone", 0xF6E7CB, 0.85F);
     m.plaster = add("plaster", 0xF7F1E4, 0.9F);
     m.ochre = add("ochre", 0xF7CB80, 0.9F);
-    m.mint = add("mint", 0xC2E3D2, 0.9F);
+    m.mint = add("mint", 0xB4DFC8, 0.9F);
     m.brick = add("brick", 0xE48C6C, 0.9F);
     m.wood = add("wood", 0x9A6B48, 0.9F);
-    m.tile = add("tile", 0xF48C55, 0.8F);
-    m.slate = add("slate", 0x9DBBD6, 0.8F);
+    m.tile = add("tile", 0xF28547, 0.8F);
+    m.slate = add("slate", 0x8DB2D8, 0.8F);
     m.glass = add("glass", 0x95C4E4, 0.3F);
-    m.leaf = add("leaf", 0xA8D65E, 0.9F);
+    m.leaf = add("leaf", 0x9FD350, 0.9F);
     m.accent = add("accent", 0x38AABB, 0.7F);
     m.iron = add("iron", 0x68727C, 0.7F);
     m.glow = builder.add_material({"glow", srgb(0xFFDF9E), 0, 0.6F, srgb(0x6A5630)});
@@ -172,7 +172,7 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     block.mansard = add.turned("mansard", make_mansard(m, false));
     block.mansard_corner = add.turned("mansard_corner", make_mansard_corner(m));
     block.mansard_dormer = add.turned("mansard_dormer", make_mansard(m, true));
-    block.roof = add.single("roof", make_flat_roof(m, RoofPart::kNone));
+    block.roof = add.single("roof", make_flat_roof(m, RoofPart::kHatch));
     block.roof_tank = add.single("roof_tank", make_flat_roof(m, RoofPart::kTank));
     block.roof_garden = add.single("roof_garden", make_flat_roof(m, RoofPart::kGarden));
     block.roof_light = add.single("roof_light", make_flat_roof(m, RoofPart::kLight));
@@ -249,10 +249,15 @@ struct Tuning {
 
 constexpr Tuning kTunings[] = {
     {"street_turn_s", 0.02},
-    {"street_end", 0.1},
-    {"street_end_e", 0.004},
-    {"street_end_s", 0.004},
-    {"mansard_corner_n", 0.8},
+    {"street_end", 0.08},
+    {"street_end_e", 0.0005},
+    {"street_end_s", 0.0005},
+    {"verge_tree_e", 0.2},
+    {"verge_tables_e", 0.2},
+    {"mansard_corner_n", 0.9},
+    {"tower_belfry_n", 2.5},
+    {"mint_corner_n", 1.7},
+    {"loft_corner_n", 1.4},
     {"shop_corner_n", 0.6},
     {"house_ground_corner_n", 1.5},
     {"park_corner_n", 1.5},

@@ -143,6 +143,19 @@ void add_roof_garden(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.open_box({{0.5F, 0.3F, -0.5F}, {1.1F, 0.65F, 0.5F}}, "EWSNU");
 }
 
+// A hatch and two vents.
+void add_hatch(MeshBuilder& mesh, const CityMaterials& m) {
+    mesh.material(m.stone).tint(0.95F);
+    mesh.bevelled_box({{-1.1F, kRoofTop, -0.9F}, {0.1F, 0.45F, 0.5F}}, 0.05F);
+    mesh.material(m.slate).tint(0.9F);
+    mesh.bevelled_box({{-1.0F, 0.45F, -0.8F}, {0.0F, 0.55F, 0.4F}}, 0.04F);
+    mesh.material(m.iron).tint(1);
+    mesh.cylinder(1.0F, -0.7F, 0.16F, kRoofTop, 0.7F, 7);
+    mesh.cone(1.0F, -0.7F, 0.28F, 0.7F, 0.9F, 7);
+    mesh.cylinder(1.2F, 0.8F, 0.12F, kRoofTop, 0.5F, 7);
+    mesh.cone(1.2F, 0.8F, 0.22F, 0.5F, 0.68F, 7);
+}
+
 void add_roof_light(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.material(m.tile).tint(0.95F);
     mesh.open_box({{-1.3F, kRoofTop, -0.9F}, {1.3F, 0.5F, 0.9F}}, "EWSN");
@@ -192,7 +205,8 @@ MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part) {
     add_deck(mesh, materials, kCityHalf, -kCityHalf, -kCityHalf, kCityHalf);
     mesh.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& thing) {
         switch (part) {
-            case RoofPart::kNone:
+            case RoofPart::kHatch:
+                add_hatch(thing, materials);
                 break;
             case RoofPart::kTank:
                 add_tank(thing, materials);

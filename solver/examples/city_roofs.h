@@ -10,7 +10,7 @@ namespace modelsynth::examples {
 // the sky. A roof fills the cell above the highest storey. Sides are built facing east, corners
 // facing east and north.
 
-enum class RoofPart : std::uint8_t { kNone, kTank, kGarden, kLight };
+enum class RoofPart : std::uint8_t { kHatch, kTank, kGarden, kLight };
 [[nodiscard]] MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part);
 [[nodiscard]] MeshBuilder make_mansard(const CityMaterials& materials, bool has_dormer);
 [[nodiscard]] MeshBuilder make_mansard_corner(const CityMaterials& materials);
