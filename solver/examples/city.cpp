@@ -34,12 +34,12 @@ std::vector<std::string_view> plan() {
         "#aaa:444#bbbb:KKK#",  //
         "#aaa:444#bbbb:KKK#",  //
         "#ggg:444#gggg:KKK#",  //
-        "#gggo:::##########",  //
+        "#ggg::::##########",  //
         "#bbb:CCC#vvvv#777#",  //
         "#bbb:CCC#MMMM#777#",  //
         "#vvv:CCC#MMMM#777#",  //
         "#########MMMM:777#",  //
-        "#gcc#qqq#::::o:::#",  //
+        "#gcc#qqq#::::::::#",  //
         "#gcc#qqq#pppp:gbb#",  //
         "#gcc#qqq#pppp:gbb#",  //
         "#gcc#qqq#pppp:gbb#",  //
@@ -129,9 +129,9 @@ StreetLetters add_streets(PieceAdder& add, const CityMaterials& m) {
 
 LaneLetters add_lanes(PieceAdder& add, const CityMaterials& m) {
     LaneLetters lane;
-    lane.plain = add.axial("lane", make_lane(m, false));
-    lane.tree = add.axial("lane_tree", make_lane(m, true));
-    lane.court = add.single("court", make_court(m));
+    lane.plain = add.axial("lane", make_lane(m, LanePart::kNone));
+    lane.tree = add.axial("lane_tree", make_lane(m, LanePart::kTree));
+    lane.yard = add.single("yard", make_lane(m, LanePart::kBench));
     lane.verge_tree = add.turned("verge_tree", make_verge(m, false));
     lane.verge_tables = add.turned("verge_tables", make_verge(m, true));
     return lane;
@@ -248,19 +248,17 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"street_turn_s", 0.02},
-    {"street_end", 0.08},
-    {"street_end_e", 0.0005},
-    {"street_end_s", 0.0005},
-    {"verge_tree_e", 0.2},
-    {"verge_tables_e", 0.2},
-    {"mansard_corner_n", 0.9},
-    {"tower_belfry_n", 2.5},
-    {"mint_corner_n", 1.7},
-    {"loft_corner_n", 1.4},
-    {"shop_corner_n", 0.6},
-    {"house_ground_corner_n", 1.5},
-    {"park_corner_n", 1.5},
+    {"yard", 0.0005},          {"lane", 0.3},
+    {"lane_tree", 0.3},        {"street_turn_s", 0.02},
+    {"street_end", 0.08},      {"street_zebra_e", 6},
+    {"street_zebra_s", 6},     {"street_fork_n", 2},
+    {"street_fork_w", 2},      {"street_crossing", 2},
+    {"street_end_e", 0.0005},  {"street_end_s", 0.0005},
+    {"verge_tree_e", 0.2},     {"verge_tables_e", 0.2},
+    {"mansard_corner_n", 0.9}, {"tower_belfry_n", 2.5},
+    {"mint_corner_n", 1.7},    {"loft_corner_n", 1.4},
+    {"shop_corner_n", 0.6},    {"house_ground_corner_n", 9},
+    {"park_corner_n", 4},      {"square_corner_n", 3},
 };
 
 void tune(discrete::Example& example) {

@@ -61,13 +61,7 @@ char of_side(const Turned& letters, int side) {
     return letters[static_cast<std::size_t>(side % kSideCount)];
 }
 
-bool is_one_of(char letter, std::string_view letters) {
-    return letters.find(letter) != std::string_view::npos;
-}
-
 bool is_street(char use) { return use == '#'; }
-
-bool is_lane(char use) { return is_one_of(use, ":o"); }
 
 bool is_brick(char use) { return use >= 'A' && use <= 'H'; }
 
@@ -194,8 +188,6 @@ class LetterChoice {
                 return garden(place);
             case 'v':
                 return verge(place);
-            case 'o':
-                return letters_.lane.court;
             default:
                 check(use == ':', "a city plan with a letter that means nothing");
                 return lane(place);
@@ -241,16 +233,20 @@ class LetterChoice {
         return letters[static_cast<std::size_t>(side)];
     }
 
-    // Lanes run on into lanes and courts; those that have none beside them, into streets.
+    // Lanes run on into lanes; those that have none beside them, into streets. Some of their cells
+    // are yards, as are all where lanes meet.
     [[nodiscard]] char lane(const Place& place) const {
         Sides ways = plan_.sides_without(place, [this](const Place& next) {
-            return !is_lane(plan_.use(next));
+            return plan_.use(next) != ':';
         });
         if (ways.count() == 0) {
             ways = plan_.arms(place);
         }
         const bool along_x = ways.contains(0) || ways.contains(2);
-        check(along_x != (ways.contains(1) || ways.contains(3)), "lanes that meet without a court");
+        const bool along_z = ways.contains(1) || ways.contains(3);
+        if ((along_x && along_z) || drawn(place, 9, 0.4F)) {
+            return letters_.lane.yard;
+        }
         const Axial& letters = drawn(place, 0, 0.35F) ? letters_.lane.tree : letters_.lane.plain;
         return letters[along_x ? 0 : 1];
     }

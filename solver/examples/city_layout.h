@@ -24,12 +24,12 @@ struct StreetLetters {
     Turned end{};   // the side with the only arm
 };
 
-// Places to walk, one cell wide: lanes between buildings, courts where they meet, verges between a
-// street (on their side) and the buildings along it.
+// Places to walk: lanes between buildings, yards, which fit between whatever there is, and verges
+// between a street (on their side) and the buildings along it.
 struct LaneLetters {
     Axial plain{};
     Axial tree{};
-    char court = 0;
+    char yard = 0;
     Turned verge_tree{};
     Turned verge_tables{};
 };
@@ -105,7 +105,7 @@ struct CityLetters {
 
 // Turns a plan (one character a column of cells) into floors of letters. In the plan
 //   # street; what it is follows from the neighbours
-//   : lane, o court, v verge between a street and a building
+//   : lane, v verge between a street and a building
 //   p park, q square; three cells deep
 //   1 ... 8 stone block of so many storeys, A ... H brick one, J ... Q mint one, three cells deep
 //   a b c house of 1, 2, 3 storeys, two cells deep; g its garden, one cell deep, on its back

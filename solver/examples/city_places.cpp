@@ -101,21 +101,19 @@ MeshBuilder shaded(MeshBuilder mesh) {
 
 }  // namespace
 
-MeshBuilder make_lane(const CityMaterials& materials, bool has_tree) {
+MeshBuilder make_lane(const CityMaterials& materials, LanePart part) {
     MeshBuilder mesh;
-    add_slabs(mesh, materials, 0.22F);
-    mesh.material(materials.paving).tint(0.62F);  // a gutter in the middle
-    add_flat(mesh, -kHalf, -0.14F, kHalf, 0.14F, kPavingTop + 0.012F);
-    if (has_tree) {
-        add_tree_pit(mesh, materials, 0.85F);
+    add_slabs(mesh, materials, 0.2F);
+    switch (part) {
+        case LanePart::kNone:
+            break;
+        case LanePart::kTree:
+            add_tree_pit(mesh, materials, 0.85F);
+            break;
+        case LanePart::kBench:
+            add_bench(mesh, materials);
+            break;
     }
-    return shaded(std::move(mesh));
-}
-
-MeshBuilder make_court(const CityMaterials& materials) {
-    MeshBuilder mesh;
-    add_slabs(mesh, materials, 0.22F);
-    add_bench(mesh, materials);
     return shaded(std::move(mesh));
 }
 

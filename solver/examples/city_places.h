@@ -9,9 +9,8 @@ namespace modelsynth::examples {
 // Where one walks between streets and buildings. Edges are built facing east, corners facing east
 // and north.
 
-// A paved lane along x.
-[[nodiscard]] MeshBuilder make_lane(const CityMaterials& materials, bool has_tree);
-[[nodiscard]] MeshBuilder make_court(const CityMaterials& materials);
+enum class LanePart : std::uint8_t { kNone, kTree, kBench };
+[[nodiscard]] MeshBuilder make_lane(const CityMaterials& materials, LanePart part);
 // A broad pavement with the street in the east: a tree and a bench, or tables.
 [[nodiscard]] MeshBuilder make_verge(const CityMaterials& materials, bool has_tables);
 
