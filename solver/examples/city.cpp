@@ -30,23 +30,27 @@ constexpr int kFloorCount = 10;
 // a model from curling up.
 std::vector<std::string_view> plan() {
     return {
-        "##################",  //
-        "#aaa:444#bbbb:KKK#",  //
-        "#aaa:444#bbbb:KKK#",  //
-        "#ggg:444#gggg:KKK#",  //
-        "#ggg::::##########",  //
-        "#bbb:CCC#vvvv#777#",  //
-        "#bbb:CCC#MMMM#777#",  //
-        "#vvv:CCC#MMMM#777#",  //
-        "#########MMMM:777#",  //
-        "#gcc#qqq#::::::::#",  //
-        "#gcc#qqq#pppp:gbb#",  //
-        "#gcc#qqq#pppp:gbb#",  //
-        "#gcc#qqq#pppp:gbb#",  //
-        "#gcc#333######gbb#",  //
-        "#:::#333#DDDD#gbb#",  //
-        "#vtt#333#DDDD#gbb#",  //
-        "#vtt#333#DDDD#gbb#",  //
+        "######################",  //
+        "#aaa:444#bbbb:KKK:ppp#",  //
+        "#aaa:444#bbbb:KKK:ppp#",  //
+        "#ggg:444#gggg:KKK:ppp#",  //
+        "#ggg::::##############",  //
+        "#bbb:CCC#vvvv:555:qqq#",  //
+        "#bbb:CCC#MMMM:555:qqq#",  //
+        "#vvv:CCC#MMMM:555:qqq#",  //
+        "#########MMMM:::::qqq#",  //
+        "#gcc#qqq#:::::::::111#",  //
+        "#gcc#qqq#pppp:gbb:111#",  //
+        "#gcc#qqq#pppp:gbb:111#",  //
+        "#gcc#qqq#pppp:gbb:yyy#",  //
+        "#gcc#222######gbb:####",  //
+        "#:::#222#DDDD#gbb:yyy#",  //
+        "#vtt#222#DDDD#gbb:JJJ#",  //
+        "#vtt#222#DDDD#gbb:JJJ#",  //
+        "##############::::JJJ#",  //
+        "#333:ggg#ccc:AAAA:JJJ#",  //
+        "#333:aaa#ccc:AAAA:JJJ#",  //
+        "#333:aaa#ggg:AAAA:vvv#",  //
     };
 }
 
@@ -122,8 +126,8 @@ StreetLetters add_streets(PieceAdder& add, const CityMaterials& m) {
     street.zebra = add.turned("street_zebra", make_straight(m, StreetPart::kZebra));
     street.crossing = add.single("street_crossing", make_street(m, kArmsCrossing));
     street.fork = add.turned("street_fork", make_street(m, kArmsFork));
-    street.turn = add.turned("street_turn", make_street(m, kArmsTurn));
     street.end = add.turned("street_end", make_street_end(m));
+    street.turn = add.turned("street_turn", make_street(m, kArmsTurn));
     return street;
 }
 
@@ -131,9 +135,10 @@ LaneLetters add_lanes(PieceAdder& add, const CityMaterials& m) {
     LaneLetters lane;
     lane.plain = add.axial("lane", make_lane(m, LanePart::kNone));
     lane.tree = add.axial("lane_tree", make_lane(m, LanePart::kTree));
-    lane.yard = add.single("yard", make_lane(m, LanePart::kBench));
-    lane.verge_tree = add.turned("verge_tree", make_verge(m, false));
-    lane.verge_tables = add.turned("verge_tables", make_verge(m, true));
+    lane.yard = add.single("yard", make_lane(m, LanePart::kBarrels));
+    lane.yard_tree = add.single("yard_tree", make_lane(m, LanePart::kBigTree));
+    lane.yard_bench = add.single("yard_bench", make_lane(m, LanePart::kBench));
+    lane.verge = add.turned("verge", make_verge(m));
     return lane;
 }
 
@@ -142,7 +147,7 @@ PlaceLetters add_park(PieceAdder& add, const CityMaterials& m) {
     park.edge = add.turned("park_edge", make_lawn_edge(m));
     park.corner = add.turned("park_corner", make_lawn_corner(m));
     park.middle = add.axial("park_tree", make_lawn(m, LawnPart::kTree));
-    park.feature = add.axial("park_flowers", make_lawn(m, LawnPart::kFlowers));
+    park.feature = add.single("park_flowers", make_lawn(m, LawnPart::kFlowers));
     return park;
 }
 
@@ -151,7 +156,7 @@ PlaceLetters add_square(PieceAdder& add, const CityMaterials& m) {
     square.edge = add.turned("square_edge", make_square_edge(m));
     square.corner = add.turned("square_corner", make_square_corner(m));
     square.middle = add.axial("square_stall", make_square_middle(m, false));
-    square.feature = add.axial("square_fountain", make_square_middle(m, true));
+    square.feature = add.single("square_fountain", make_square_middle(m, true));
     return square;
 }
 
@@ -169,11 +174,13 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     block.brick_wall = add.turned("loft_wall", make_loft_wall(m));
     block.brick_corner = add.turned("loft_corner", make_loft_corner(m));
     block.core = add.single("core", make_core(m));
-    block.mansard = add.turned("mansard", make_mansard(m, false));
-    block.mansard_corner = add.turned("mansard_corner", make_mansard_corner(m));
-    block.mansard_dormer = add.turned("mansard_dormer", make_mansard(m, true));
+    block.mansard = add.turned("mansard", make_mansard(m, m.slate, false));
+    block.mansard_corner = add.turned("mansard_corner", make_mansard_corner(m, m.slate));
+    block.tile_mansard = add.turned("tile_mansard", make_mansard(m, m.tile, false));
+    block.tile_mansard_corner = add.turned("tile_mansard_corner", make_mansard_corner(m, m.tile));
+    block.mansard_dormer = add.turned("mansard_dormer", make_mansard(m, m.slate, true));
     block.roof = add.single("roof", make_flat_roof(m, RoofPart::kHatch));
-    block.roof_tank = add.single("roof_tank", make_flat_roof(m, RoofPart::kTank));
+    block.roof_cupola = add.single("roof_cupola", make_flat_roof(m, RoofPart::kCupola));
     block.roof_garden = add.single("roof_garden", make_flat_roof(m, RoofPart::kGarden));
     block.roof_light = add.single("roof_light", make_flat_roof(m, RoofPart::kLight));
     return block;
@@ -182,7 +189,6 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
 HouseLetters add_houses(PieceAdder& add, const CityMaterials& m) {
     HouseLetters house;
     house.front = add.turned("house_front", make_house_door(m));
-    house.back = add.turned("house_back", make_house_front(m));
     house.ground_corner = add.turned("house_ground_corner", make_house_ground_corner(m));
     house.garden = add.turned("garden", make_garden(m, GardenEnd::kNone));
     house.garden_left = add.turned("garden_left", make_garden(m, GardenEnd::kLeft));
@@ -248,17 +254,29 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"yard", 0.0005},          {"lane", 0.3},
-    {"lane_tree", 0.3},        {"street_turn_s", 0.02},
-    {"street_end", 0.08},      {"street_zebra_e", 6},
-    {"street_zebra_s", 6},     {"street_fork_n", 2},
-    {"street_fork_w", 2},      {"street_crossing", 2},
-    {"street_end_e", 0.0005},  {"street_end_s", 0.0005},
-    {"verge_tree_e", 0.2},     {"verge_tables_e", 0.2},
-    {"mansard_corner_n", 0.9}, {"tower_belfry_n", 2.5},
-    {"mint_corner_n", 1.7},    {"loft_corner_n", 1.4},
-    {"shop_corner_n", 0.6},    {"house_ground_corner_n", 9},
-    {"park_corner_n", 4},      {"square_corner_n", 3},
+    {"yard", 0.0005},
+    {"lane", 0.3},
+    {"lane_tree", 0.3},
+    {"street_turn_s", 0.02},
+    {"yard_tree", 0.0005},
+    {"street_zebra_e", 6},
+    {"street_zebra_s", 6},
+    {"street_fork_n", 2},
+    {"street_fork_w", 2},
+    {"street_crossing", 2},
+    {"yard_bench", 0.0005},
+    {"verge_e", 0.2},
+    {"street_end", 0.08},
+    {"street_end_e", 0.0005},
+    {"street_end_s", 0.0005},
+    {"mansard_corner_n", 0.9},
+    {"tower_belfry_n", 2.5},
+    {"mint_corner_n", 1.7},
+    {"loft_corner_n", 1.4},
+    {"shop_corner_n", 0.6},
+    {"house_ground_corner_n", 9},
+    {"park_corner_n", 4},
+    {"square_corner_n", 3},
 };
 
 void tune(discrete::Example& example) {

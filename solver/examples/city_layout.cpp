@@ -78,9 +78,8 @@ class Plan {
   public:
     explicit Plan(const std::vector<std::string_view>& quarter)
         : size_(2 * static_cast<int>(quarter.size()) + 1),
-          uses_(
-              static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), '#')
-          ) {
+          uses_(static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), '#')),
+          origins_(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_)) {
         const auto n = static_cast<int>(quarter.size());
         for (int z = 0; z < n; ++z) {
             const std::string_view row = quarter[static_cast<std::size_t>(z)];
@@ -88,7 +87,7 @@ class Plan {
             for (int x = 0; x <= n; ++x) {
                 Place place = {x, z};
                 for (int turn = 0; turn < kSideCount; ++turn) {
-                    set(place, row[static_cast<std::size_t>(x)]);
+                    set(place, row[static_cast<std::size_t>(x)], {x, z});
                     place = {size_ - 1 - place.z, place.x};
                 }
             }
@@ -106,6 +105,9 @@ class Plan {
         return contains(at) ? uses_[static_cast<std::size_t>(at.z)][static_cast<std::size_t>(at.x)]
                             : ' ';
     }
+
+    // The place in the quarter of which this is a turn.
+    [[nodiscard]] Place origin(const Place& at) const { return origins_[index(at)]; }
 
     [[nodiscard]] int storeys(const Place& at) const {
         const char use = this->use(at);
@@ -150,12 +152,19 @@ class Plan {
     }
 
   private:
-    void set(const Place& at, char use) {
+    void set(const Place& at, char use, const Place& origin) {
         uses_[static_cast<std::size_t>(at.z)][static_cast<std::size_t>(at.x)] = use;
+        origins_[index(at)] = origin;
+    }
+
+    [[nodiscard]] std::size_t index(const Place& at) const {
+        return static_cast<std::size_t>(at.z) * static_cast<std::size_t>(size_) +
+               static_cast<std::size_t>(at.x);
     }
 
     int size_;
     std::vector<std::string> uses_;
+    std::vector<Place> origins_;
 };
 
 // Chooses the letter of each cell of the plan.
@@ -188,6 +197,8 @@ class LetterChoice {
                 return garden(place);
             case 'v':
                 return verge(place);
+            case 'y':
+                return yard(place);
             default:
                 check(use == ':', "a city plan with a letter that means nothing");
                 return lane(place);
@@ -195,9 +206,11 @@ class LetterChoice {
     }
 
   private:
-    // True for about `share` of all places; which does not matter, only that it is the same always.
-    static bool drawn(const Place& place, int floor, float share) {
-        const auto seed = static_cast<std::uint32_t>(place.x * 64 + place.z);
+    // True for about `share` of all places; which does not matter, only that it is the same always,
+    // and in all four turns: what fits in one direction must fit in all.
+    [[nodiscard]] bool drawn(const Place& place, int floor, float share) const {
+        const Place origin = plan_.origin(place);
+        const auto seed = static_cast<std::uint32_t>(origin.x * 64 + origin.z);
         return scatter(seed, static_cast<std::uint32_t>(floor)) < share;
     }
 
@@ -227,7 +240,11 @@ class LetterChoice {
                 return of_side(street.zebra, towards);
             }
         }
-        const Axial& letters = drawn(place, 4, 0.3F)    ? street.lamps
+        // Beside a turn always the same, so that a ring of any size closes.
+        const bool is_beside_turn = plan_.arms(place.next(side)).is_corner() ||
+                                    plan_.arms(place.next(side + 2)).is_corner();
+        const Axial& letters = is_beside_turn           ? street.plain
+                               : drawn(place, 4, 0.3F)  ? street.lamps
                                : drawn(place, 5, 0.35F) ? street.car
                                                         : street.plain;
         return letters[static_cast<std::size_t>(side)];
@@ -245,10 +262,16 @@ class LetterChoice {
         const bool along_x = ways.contains(0) || ways.contains(2);
         const bool along_z = ways.contains(1) || ways.contains(3);
         if ((along_x && along_z) || drawn(place, 9, 0.4F)) {
-            return letters_.lane.yard;
+            return yard(place);
         }
         const Axial& letters = drawn(place, 0, 0.35F) ? letters_.lane.tree : letters_.lane.plain;
         return letters[along_x ? 0 : 1];
+    }
+
+    [[nodiscard]] char yard(const Place& place) const {
+        return drawn(place, 10, 0.5F)   ? letters_.lane.yard
+               : drawn(place, 11, 0.6F) ? letters_.lane.yard_tree
+                                        : letters_.lane.yard_bench;
     }
 
     [[nodiscard]] char verge(const Place& place) const {
@@ -256,10 +279,7 @@ class LetterChoice {
             const char behind = plan_.use(place.next(side + 2));
             if (is_street(plan_.use(place.next(side))) &&
                 (is_block(behind) || is_house(behind) || behind == 't')) {
-                return of_side(
-                    drawn(place, 0, 0.5F) ? letters_.lane.verge_tree : letters_.lane.verge_tables,
-                    side
-                );
+                return of_side(letters_.lane.verge, side);
             }
         }
         check(false, "a verge that is not between a street and a building");
@@ -277,8 +297,8 @@ class LetterChoice {
         check(ends.count() == 0, "a place that is not three cells deep");
         const bool along_x = plan_.sides_of(place.next(0)).count() == 0 ||
                              plan_.sides_of(place.next(2)).count() == 0;
-        const Axial& kind = (place.x + place.z) % 2 == 0 ? letters.middle : letters.feature;
-        return kind[along_x ? 0 : 1];
+        const Place origin = plan_.origin(place);
+        return (origin.x + origin.z) % 2 == 0 ? letters.middle[along_x ? 0 : 1] : letters.feature;
     }
 
     [[nodiscard]] char garden(const Place& place) const {
@@ -349,9 +369,14 @@ class LetterChoice {
         const BlockLetters& block = letters_.block;
         if (edges.count() == 0) {
             return drawn(place, 1, 0.4F)   ? block.roof
-                   : drawn(place, 2, 0.3F) ? block.roof_tank
+                   : drawn(place, 2, 0.4F) ? block.roof_cupola
                    : drawn(place, 3, 0.5F) ? block.roof_garden
                                            : block.roof_light;
+        }
+        if (plan_.storeys(place) % 2 == 1) {
+            return of_side(
+                edges.count() == 2 ? block.tile_mansard_corner : block.tile_mansard, edges.first()
+            );
         }
         return of_side(
             edges.count() == 2      ? block.mansard_corner
@@ -405,8 +430,7 @@ class LetterChoice {
         if (floor == 2) {
             return of_side(is_corner ? house.timber_corner : house.timber_wall, side);
         }
-        const bool is_back = plan_.use(place.next(side)) == 'g';
-        return of_side(is_corner ? house.ground_corner : is_back ? house.back : house.front, side);
+        return of_side(is_corner ? house.ground_corner : house.front, side);
     }
 
     const Plan& plan_;

@@ -21,7 +21,7 @@ struct StreetLetters {
     char crossing = 0;
     Turned fork{};  // the side without an arm
     Turned turn{};  // arms to the side and to the next one counter-clockwise
-    Turned end{};   // the side with the only arm
+    Turned end{};   // the side with the only arm; with it a street can grow from block to block
 };
 
 // Places to walk: lanes between buildings, yards, which fit between whatever there is, and verges
@@ -30,8 +30,9 @@ struct LaneLetters {
     Axial plain{};
     Axial tree{};
     char yard = 0;
-    Turned verge_tree{};
-    Turned verge_tables{};
+    char yard_tree = 0;
+    char yard_bench = 0;
+    Turned verge{};
 };
 
 // An open place three cells deep.
@@ -39,7 +40,7 @@ struct PlaceLetters {
     Turned edge{};
     Turned corner{};  // ends at the side and at the next one counter-clockwise
     Axial middle{};
-    Axial feature{};
+    char feature = 0;
 };
 
 // Stone-faced blocks under mansard roofs, three cells deep. The core on the ground has letters for
@@ -60,8 +61,10 @@ struct BlockLetters {
     Turned mansard{};
     Turned mansard_corner{};
     Turned mansard_dormer{};
+    Turned tile_mansard{};
+    Turned tile_mansard_corner{};
     char roof = 0;
-    char roof_tank = 0;
+    char roof_cupola = 0;
     char roof_garden = 0;
     char roof_light = 0;
 };
@@ -69,7 +72,6 @@ struct BlockLetters {
 // Houses two cells deep under a gable roof, with a row of garden behind.
 struct HouseLetters {
     Turned front{};
-    Turned back{};
     Turned ground_corner{};
     Turned garden{};        // the side away from the house
     Turned garden_left{};   // ... that ends counter-clockwise of it
@@ -105,7 +107,7 @@ struct CityLetters {
 
 // Turns a plan (one character a column of cells) into floors of letters. In the plan
 //   # street; what it is follows from the neighbours
-//   : lane, v verge between a street and a building
+//   : lane, y yard, v verge between a street and a building
 //   p park, q square; three cells deep
 //   1 ... 8 stone block of so many storeys, A ... H brick one, J ... Q mint one, three cells deep
 //   a b c house of 1, 2, 3 storeys, two cells deep; g its garden, one cell deep, on its back

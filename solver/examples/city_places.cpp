@@ -39,6 +39,28 @@ void add_tree_pit(MeshBuilder& mesh, const CityMaterials& m, float scale) {
     add_tree(mesh, m, kPavingTop, scale);
 }
 
+// An old tree in a round bed with a low wall.
+void add_round_bed(MeshBuilder& mesh, const CityMaterials& m) {
+    constexpr float kWall = kPavingTop + 0.3F;
+    mesh.material(m.stone).tint(0.95F);
+    mesh.cylinder(0, 0, 1.3F, kPavingTop, kWall, 10);
+    mesh.material(m.leaf).tint(0.9F);
+    mesh.cylinder(0, 0, 1.15F, kWall, kWall + 0.05F, 10);
+    add_tree(mesh, m, kWall, 1.3F);
+    mesh.material(m.tile).tint(1);
+    mesh.ball({0.75F, kWall + 0.1F, 0.35F}, {0.3F, 0.2F, 0.3F}, 5);
+    mesh.ball({-0.5F, kWall + 0.1F, 0.7F}, {0.3F, 0.2F, 0.3F}, 5);
+}
+
+// Barrels and a crate in a corner, the rest left free.
+void add_barrels(MeshBuilder& mesh, const CityMaterials& m) {
+    mesh.material(m.wood).tint(1);
+    mesh.cylinder(-1.2F, -1.1F, 0.3F, kPavingTop, 0.85F, 8);
+    mesh.cylinder(-0.6F, -1.35F, 0.25F, kPavingTop, 0.7F, 8);
+    mesh.tint(0.85F);
+    mesh.open_box({{-1.6F, kPavingTop, -0.6F}, {-1.0F, 0.65F, 0.05F}}, "EWSNU");
+}
+
 void add_grass(MeshBuilder& mesh, const CityMaterials& m, float east, float north) {
     mesh.material(m.leaf).tint(0.92F, 1, 0.9F);
     mesh.open_box({{-kHalf, 0, north}, {east, kPavingTop, kHalf}}, "EWSNU");
@@ -110,6 +132,12 @@ MeshBuilder make_lane(const CityMaterials& materials, LanePart part) {
         case LanePart::kTree:
             add_tree_pit(mesh, materials, 0.85F);
             break;
+        case LanePart::kBigTree:
+            add_round_bed(mesh, materials);
+            break;
+        case LanePart::kBarrels:
+            add_barrels(mesh, materials);
+            break;
         case LanePart::kBench:
             add_bench(mesh, materials);
             break;
@@ -117,21 +145,13 @@ MeshBuilder make_lane(const CityMaterials& materials, LanePart part) {
     return shaded(std::move(mesh));
 }
 
-MeshBuilder make_verge(const CityMaterials& materials, bool has_tables) {
+MeshBuilder make_verge(const CityMaterials& materials) {
     MeshBuilder mesh;
     add_slabs(mesh, materials, 0);
-    if (has_tables) {
-        add_table(mesh, materials, -0.3F, -0.95F);
-        add_table(mesh, materials, -0.3F, 0.95F);
-    } else {
-        add_tree_pit(mesh, materials, 0.9F);
-        mesh.material(materials.wood).tint(1);
-        mesh.open_box({{-1.5F, 0.45F, -0.7F}, {-1.05F, 0.52F, 0.7F}}, "EWSNUD");
-        mesh.material(materials.iron).tint(1);
-        for (const float z : {-0.5F, 0.45F}) {
-            mesh.open_box({{-1.45F, kPavingTop, z}, {-1.1F, 0.45F, z + 0.06F}}, "EWSN");
-        }
-    }
+    add_table(mesh, materials, -0.3F, -1.0F);
+    mesh.placed({0, 0, 1.0F}, 0, 1, [&](MeshBuilder& part) {
+        add_tree_pit(part, materials, 0.8F);
+    });
     return shaded(std::move(mesh));
 }
 

@@ -9,10 +9,10 @@ namespace modelsynth::examples {
 // Where one walks between streets and buildings. Edges are built facing east, corners facing east
 // and north.
 
-enum class LanePart : std::uint8_t { kNone, kTree, kBench };
+enum class LanePart : std::uint8_t { kNone, kTree, kBigTree, kBench, kBarrels };
 [[nodiscard]] MeshBuilder make_lane(const CityMaterials& materials, LanePart part);
-// A broad pavement with the street in the east: a tree and a bench, or tables.
-[[nodiscard]] MeshBuilder make_verge(const CityMaterials& materials, bool has_tables);
+// A broad pavement with the street in the east: a tree and a table.
+[[nodiscard]] MeshBuilder make_verge(const CityMaterials& materials);
 
 // A market square: bollards along its edges, stalls or a fountain in the middle.
 [[nodiscard]] MeshBuilder make_square_edge(const CityMaterials& materials);

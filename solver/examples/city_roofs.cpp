@@ -28,7 +28,7 @@ struct Mitres {
     bool right = false;
 };
 
-void add_slope(MeshBuilder& mesh, const CityMaterials& m, const Mitres& mitres) {
+void add_slope(MeshBuilder& mesh, const CityMaterials& m, MaterialId cover, const Mitres& mitres) {
     const auto end = [](bool is_mitred, float z) { return is_mitred ? z : kCityHalf; };
     // Cornice and gutter.
     mesh.material(m.stone).tint(1);
@@ -36,7 +36,7 @@ void add_slope(MeshBuilder& mesh, const CityMaterials& m, const Mitres& mitres) 
     const float right = end(mitres.right, kCityHalf + 0.3F);
     mesh.open_box({{left, 0, kCityHalf}, {right, kEavesTop, kCityHalf + 0.3F}}, "SUDEW");
     constexpr int kCourses = 4;
-    mesh.material(m.slate);
+    mesh.material(cover);
     for (int course = 0; course < kCourses; ++course) {
         const auto at = [](int row) {
             const float t = static_cast<float>(row) / kCourses;
@@ -100,24 +100,47 @@ void add_roof_window(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.mirrored(half);
 }
 
-// A water tank on legs.
-void add_tank(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.iron).tint(0.89F);
-    for (const float x : {-0.75F, 0.75F}) {
-        for (const float z : {-0.75F, 0.75F}) {
-            mesh.open_box({{x - 0.08F, kRoofTop, z - 0.08F}, {x + 0.08F, 1.3F, z + 0.08F}}, "EWSN");
-        }
+// A tiled pavilion over the whole cell, with a lantern on top.
+void add_cupola(MeshBuilder& mesh, const CityMaterials& m) {
+    constexpr float kEave = 1.85F;
+    constexpr float kRoofFoot = 0.5F;
+    constexpr float kNeck = 0.45F;
+    constexpr float kShoulder = 1.9F;
+    mesh.material(m.stone).tint(0.97F);
+    mesh.open_box({{-1.7F, kRoofTop, -1.7F}, {1.7F, kRoofFoot, 1.7F}}, "EWSN");
+    mesh.box({{-kEave, kRoofFoot - 0.1F, -kEave}, {kEave, kRoofFoot, kEave}});
+    for (int side = 0; side < 4; ++side) {
+        mesh.turned(side, [&](MeshBuilder& part) {
+            constexpr int kCourses = 3;
+            part.material(m.tile);
+            for (int course = 0; course < kCourses; ++course) {
+                const auto at = [](int row) {
+                    const float t = static_cast<float>(row) / kCourses;
+                    return Point2{
+                        kEave + (kNeck - kEave) * t, kRoofFoot + (kShoulder - kRoofFoot) * t};
+                };
+                const Point2 low = at(course);
+                const Point2 high = at(course + 1);
+                part.tint(course % 2 == 0 ? 1.0F : 0.9F);
+                part.quad(
+                    {-low.u, low.v, low.u},
+                    {low.u, low.v, low.u},
+                    {high.u, high.v, high.u},
+                    {-high.u, high.v, high.u}
+                );
+            }
+            part.material(m.glass).tint(1);
+            part.open_box({{-0.3F, kShoulder, 0.3F}, {0.3F, 2.5F, 0.36F}}, "S");
+            part.material(m.stone).tint(1);
+            part.open_box({{0.28F, kShoulder, 0.28F}, {0.42F, 2.5F, 0.42F}}, "EWSN");
+            part.material(m.tile).tint(0.97F);
+            part.triangle({-0.6F, 2.5F, 0.6F}, {0.6F, 2.5F, 0.6F}, {0, 3.3F, 0});
+            part.tint(0.75F);
+            part.triangle({0.6F, 2.5F, 0.6F}, {-0.6F, 2.5F, 0.6F}, {0, 2.5F, 0});
+        });
     }
-    mesh.box({{-1.05F, 1.2F, -1.05F}, {1.05F, 1.35F, 1.05F}});
-    mesh.material(m.wood).tint(1);
-    mesh.cylinder(0, 0, 1.0F, 1.35F, 3.1F, 12);
-    mesh.material(m.iron).tint(0.83F);
-    for (const float y : {1.7F, 2.6F}) {
-        const std::array<Point2, 2> hoop = {{{1.03F, y}, {1.03F, y + 0.1F}}};
-        mesh.lathe(0, 0, hoop, 12);
-    }
-    mesh.material(m.tile).tint(1);
-    mesh.cone(0, 0, 1.2F, 3.1F, 3.9F, 12);
+    mesh.material(m.iron).tint(1);
+    mesh.cone(0, 0, 0.08F, 3.2F, 3.9F, 5);
 }
 
 // Lawn, a pergola and a seat up in the sun.
@@ -156,29 +179,39 @@ void add_hatch(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.cone(1.2F, 0.8F, 0.22F, 0.5F, 0.68F, 7);
 }
 
+// A winter garden: a glass roof as wide as the cell.
 void add_roof_light(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.tile).tint(0.95F);
-    mesh.open_box({{-1.3F, kRoofTop, -0.9F}, {1.3F, 0.5F, 0.9F}}, "EWSN");
-    mesh.material(m.glass).tint(1);
-    mesh.quad({-1.3F, 0.5F, 0.9F}, {1.3F, 0.5F, 0.9F}, {1.3F, 1.0F, 0}, {-1.3F, 1.0F, 0});
-    mesh.quad({1.3F, 0.5F, -0.9F}, {-1.3F, 0.5F, -0.9F}, {-1.3F, 1.0F, 0}, {1.3F, 1.0F, 0});
-    mesh.triangle({1.3F, 0.5F, 0.9F}, {1.3F, 0.5F, -0.9F}, {1.3F, 1.0F, 0});
-    mesh.triangle({-1.3F, 0.5F, -0.9F}, {-1.3F, 0.5F, 0.9F}, {-1.3F, 1.0F, 0});
-    mesh.material(m.iron).tint(0.89F);
-    for (const float x : {-1.3F, -0.43F, 0.43F, 1.3F}) {
-        mesh.open_box({{x - 0.04F, 0.95F, -0.06F}, {x + 0.04F, 1.05F, 0.06F}}, "EWSNU");
-        mesh.quad(
-            {x - 0.04F, 0.52F, 0.92F},
-            {x + 0.04F, 0.52F, 0.92F},
-            {x + 0.04F, 1.03F, 0.02F},
-            {x - 0.04F, 1.03F, 0.02F}
-        );
-        mesh.quad(
-            {x + 0.04F, 0.52F, -0.92F},
-            {x - 0.04F, 0.52F, -0.92F},
-            {x - 0.04F, 1.03F, -0.02F},
-            {x + 0.04F, 1.03F, -0.02F}
-        );
+    constexpr float kFoot = 1.6F;
+    constexpr float kWall = 0.7F;
+    constexpr float kTop = 1.9F;
+    mesh.material(m.stone).tint(0.97F);
+    mesh.open_box({{-kFoot, kRoofTop, -kFoot}, {kFoot, 0.25F, kFoot}}, "EWSNU");
+    for (int side = 0; side < 4; ++side) {
+        mesh.turned(side, [&](MeshBuilder& part) {
+            part.material(m.glass).tint(1);
+            part.quad(
+                {-kFoot, 0.25F, kFoot},
+                {kFoot, 0.25F, kFoot},
+                {kFoot, kWall, kFoot},
+                {-kFoot, kWall, kFoot}
+            );
+            part.triangle({-kFoot, kWall, kFoot}, {kFoot, kWall, kFoot}, {0, kTop, 0});
+            part.material(m.plaster).tint(1);
+            part.open_box(
+                {{-kFoot, kWall - 0.05F, kFoot}, {kFoot, kWall + 0.05F, kFoot + 0.05F}}, "SUD"
+            );
+            for (const float x : {-kFoot, -0.55F, 0.55F, kFoot - 0.08F}) {
+                part.open_box({{x, 0.25F, kFoot}, {x + 0.08F, kWall, kFoot + 0.05F}}, "SEW");
+            }
+            // Along the hip.
+            constexpr float kBar = 0.06F;
+            part.quad(
+                {kFoot - kBar, kWall + 0.03F, kFoot + 0.03F},
+                {kFoot + kBar, kWall + 0.03F, kFoot - kBar},
+                {kBar, kTop + 0.03F, -kBar},
+                {-kBar, kTop + 0.03F, kBar}
+            );
+        });
     }
 }
 
@@ -208,8 +241,8 @@ MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part) {
             case RoofPart::kHatch:
                 add_hatch(thing, materials);
                 break;
-            case RoofPart::kTank:
-                add_tank(thing, materials);
+            case RoofPart::kCupola:
+                add_cupola(thing, materials);
                 break;
             case RoofPart::kGarden:
                 add_roof_garden(thing, materials);
@@ -222,10 +255,10 @@ MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part) {
     return shaded(std::move(mesh));
 }
 
-MeshBuilder make_mansard(const CityMaterials& materials, bool has_dormer) {
+MeshBuilder make_mansard(const CityMaterials& materials, MaterialId cover, bool has_dormer) {
     MeshBuilder mesh;
     mesh.turned(1, [&](MeshBuilder& part) {
-        add_slope(part, materials, {});
+        add_slope(part, materials, cover, {});
         add_deck(part, materials, kCityHalf, -kCityHalf, -kCityHalf, kEdge);
         if (has_dormer) {
             add_roof_window(part, materials);
@@ -235,10 +268,10 @@ MeshBuilder make_mansard(const CityMaterials& materials, bool has_dormer) {
     return shaded(std::move(mesh));
 }
 
-MeshBuilder make_mansard_corner(const CityMaterials& materials) {
+MeshBuilder make_mansard_corner(const CityMaterials& materials, MaterialId cover) {
     MeshBuilder mesh;
-    mesh.turned(1, [&](MeshBuilder& part) { add_slope(part, materials, {false, true}); });
-    mesh.turned(2, [&](MeshBuilder& part) { add_slope(part, materials, {true, false}); });
+    mesh.turned(1, [&](MeshBuilder& part) { add_slope(part, materials, cover, {false, true}); });
+    mesh.turned(2, [&](MeshBuilder& part) { add_slope(part, materials, cover, {true, false}); });
     add_deck(mesh, materials, kEdge, -kEdge, -kCityHalf, kCityHalf);
     // A finial marks the corner.
     mesh.material(materials.iron).tint(1);
