@@ -135,7 +135,7 @@ LaneLetters add_lanes(PieceAdder& add, const CityMaterials& m) {
     LaneLetters lane;
     lane.plain = add.axial("lane", make_lane(m, LanePart::kNone));
     lane.tree = add.axial("lane_tree", make_lane(m, LanePart::kTree));
-    lane.yard = add.single("yard", make_lane(m, LanePart::kBarrels));
+    lane.yard = add.single("yard", make_lane(m, LanePart::kDrain));
     lane.yard_tree = add.single("yard_tree", make_lane(m, LanePart::kBigTree));
     lane.yard_bench = add.single("yard_bench", make_lane(m, LanePart::kBench));
     lane.verge = add.turned("verge", make_verge(m));
@@ -163,7 +163,6 @@ PlaceLetters add_square(PieceAdder& add, const CityMaterials& m) {
 BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
     BlockLetters block;
     block.shop = add.turned("shop", make_shop(m));
-    block.door = add.turned("block_door", make_block_door(m));
     block.ground_corner = add.turned("shop_corner", make_shop_corner(m));
     block.ground_core = add.axial("ground_core", make_core(m));
     block.wall = add.turned("block_wall", make_block_wall(m, m.stone, false));
@@ -189,6 +188,7 @@ BlockLetters add_blocks(PieceAdder& add, const CityMaterials& m) {
 HouseLetters add_houses(PieceAdder& add, const CityMaterials& m) {
     HouseLetters house;
     house.front = add.turned("house_front", make_house_door(m));
+    house.back = add.turned("house_back", make_house_front(m));
     house.ground_corner = add.turned("house_ground_corner", make_house_ground_corner(m));
     house.garden = add.turned("garden", make_garden(m, GardenEnd::kNone));
     house.garden_left = add.turned("garden_left", make_garden(m, GardenEnd::kLeft));

@@ -207,17 +207,15 @@ MeshBuilder make_shop(const CityMaterials& materials) {
     }));
 }
 
-MeshBuilder make_block_door(const CityMaterials& materials) {
-    return shaded_ground(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_door_front(mesh, materials, end);
-    }));
-}
-
 MeshBuilder make_shop_corner(const CityMaterials& materials) {
     const auto front = [&](MeshBuilder& mesh, RightEnd end) {
         add_shop_front(mesh, materials, false, end);
     };
-    return shaded_ground(make_corner(front, front));
+    // The way up to the flats is round the corner.
+    const auto door = [&](MeshBuilder& mesh, RightEnd end) {
+        add_door_front(mesh, materials, end);
+    };
+    return shaded_ground(make_corner(front, door));
 }
 
 MeshBuilder make_core(const CityMaterials& materials) {

@@ -8,7 +8,6 @@ namespace modelsynth::examples {
 // Sides are built facing east, corners facing east and north.
 
 [[nodiscard]] MeshBuilder make_shop(const CityMaterials& materials);
-[[nodiscard]] MeshBuilder make_block_door(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_shop_corner(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_core(const CityMaterials& materials);
 

@@ -340,6 +340,15 @@ MeshBuilder shaded(MeshBuilder mesh, bool is_ground) {
 
 }  // namespace
 
+MeshBuilder make_house_front(const CityMaterials& materials) {
+    return shaded(
+        make_side([&](MeshBuilder& mesh, RightEnd end) {
+            add_two_windows(mesh, materials, HouseStorey::kGround, end);
+        }),
+        true
+    );
+}
+
 MeshBuilder make_house_door(const CityMaterials& materials) {
     return shaded(
         make_side([&](MeshBuilder& mesh, RightEnd end) { add_door_front(mesh, materials, end); }),

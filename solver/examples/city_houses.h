@@ -9,6 +9,7 @@ namespace modelsynth::examples {
 // Old houses, two cells deep, plastered below and half-timbered above, under tiled gable roofs.
 // Sides are built facing east, corners facing east and north.
 
+[[nodiscard]] MeshBuilder make_house_front(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_house_door(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_house_ground_corner(const CityMaterials& materials);
 enum class HouseStorey : std::uint8_t { kGround, kMiddle, kTimber };

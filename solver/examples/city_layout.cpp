@@ -346,12 +346,7 @@ class LetterChoice {
             return floor == 0 ? block.ground_core[along_z ? 1 : 0] : block.core;
         }
         if (floor == 0) {
-            return of_side(
-                faces.count() == 2       ? block.ground_corner
-                : drawn(place, 0, 0.35F) ? block.door
-                                         : block.shop,
-                side
-            );
+            return of_side(faces.count() == 2 ? block.ground_corner : block.shop, side);
         }
         const char use = plan_.use(place);
         const bool is_corner = faces.count() == 2;
@@ -430,7 +425,8 @@ class LetterChoice {
         if (floor == 2) {
             return of_side(is_corner ? house.timber_corner : house.timber_wall, side);
         }
-        return of_side(is_corner ? house.ground_corner : house.front, side);
+        const bool is_back = plan_.use(place.next(side)) == 'g';
+        return of_side(is_corner ? house.ground_corner : is_back ? house.back : house.front, side);
     }
 
     const Plan& plan_;

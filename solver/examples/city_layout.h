@@ -47,7 +47,6 @@ struct PlaceLetters {
 // the two ways it can run, so that no block grows in both.
 struct BlockLetters {
     Turned shop{};
-    Turned door{};
     Turned ground_corner{};
     Axial ground_core{};
     Turned wall{};
@@ -72,6 +71,7 @@ struct BlockLetters {
 // Houses two cells deep under a gable roof, with a row of garden behind.
 struct HouseLetters {
     Turned front{};
+    Turned back{};  // always with a garden
     Turned ground_corner{};
     Turned garden{};        // the side away from the house
     Turned garden_left{};   // ... that ends counter-clockwise of it

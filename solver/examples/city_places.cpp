@@ -52,13 +52,12 @@ void add_round_bed(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.ball({-0.5F, kWall + 0.1F, 0.7F}, {0.3F, 0.2F, 0.3F}, 5);
 }
 
-// Barrels and a crate in a corner, the rest left free.
-void add_barrels(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.wood).tint(1);
-    mesh.cylinder(-1.2F, -1.1F, 0.3F, kPavingTop, 0.85F, 8);
-    mesh.cylinder(-0.6F, -1.35F, 0.25F, kPavingTop, 0.7F, 8);
-    mesh.tint(0.85F);
-    mesh.open_box({{-1.6F, kPavingTop, -0.6F}, {-1.0F, 0.65F, 0.05F}}, "EWSNU");
+// A gutter stone in the middle.
+void add_drain(MeshBuilder& mesh, const CityMaterials& m) {
+    mesh.material(m.stone).tint(0.8F);
+    mesh.open_box({{-0.3F, 0.1F, -0.3F}, {0.3F, kPavingTop + 0.03F, 0.3F}}, "EWSNU");
+    mesh.material(m.iron).tint(1);
+    mesh.open_box({{-0.2F, 0.1F, -0.2F}, {0.2F, kPavingTop + 0.05F, 0.2F}}, "EWSNU");
 }
 
 void add_grass(MeshBuilder& mesh, const CityMaterials& m, float east, float north) {
@@ -135,8 +134,8 @@ MeshBuilder make_lane(const CityMaterials& materials, LanePart part) {
         case LanePart::kBigTree:
             add_round_bed(mesh, materials);
             break;
-        case LanePart::kBarrels:
-            add_barrels(mesh, materials);
+        case LanePart::kDrain:
+            add_drain(mesh, materials);
             break;
         case LanePart::kBench:
             add_bench(mesh, materials);

@@ -9,7 +9,7 @@ namespace modelsynth::examples {
 // Where one walks between streets and buildings. Edges are built facing east, corners facing east
 // and north.
 
-enum class LanePart : std::uint8_t { kNone, kTree, kBigTree, kBench, kBarrels };
+enum class LanePart : std::uint8_t { kNone, kTree, kBigTree, kBench, kDrain };
 [[nodiscard]] MeshBuilder make_lane(const CityMaterials& materials, LanePart part);
 // A broad pavement with the street in the east: a tree and a table.
 [[nodiscard]] MeshBuilder make_verge(const CityMaterials& materials);

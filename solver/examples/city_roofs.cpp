@@ -105,7 +105,7 @@ void add_cupola(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kEave = 1.85F;
     constexpr float kRoofFoot = 0.5F;
     constexpr float kNeck = 0.45F;
-    constexpr float kShoulder = 1.9F;
+    constexpr float kShoulder = 2.1F;
     mesh.material(m.stone).tint(0.97F);
     mesh.open_box({{-1.7F, kRoofTop, -1.7F}, {1.7F, kRoofFoot, 1.7F}}, "EWSN");
     mesh.box({{-kEave, kRoofFoot - 0.1F, -kEave}, {kEave, kRoofFoot, kEave}});
