@@ -35,15 +35,15 @@ std::vector<std::string_view> plan() {
         "#aaa:444#bbbb:KKK:ppp#",  //
         "#ggg:444#gggg:KKK:ppp#",  //
         "#ggg::::##############",  //
-        "#bbb:CCC#vvvv:555:qqq#",  //
-        "#bbb:CCC#MMMM:555:qqq#",  //
-        "#vvv:CCC#MMMM:555:qqq#",  //
-        "#########MMMM:::::qqq#",  //
-        "#gcc#qqq#:::::::::111#",  //
-        "#gcc#qqq#pppp:gbb:111#",  //
-        "#gcc#qqq#pppp:gbb:111#",  //
-        "#gcc#qqq#pppp:gbb:yyy#",  //
-        "#gcc#222######gbb:####",  //
+        "#bbb:CCC#vvvv:555yqqq#",  //
+        "#bbb:CCC#MMMM:555yqqq#",  //
+        "#vvv:CCC#MMMM:555yqqq#",  //
+        "#########MMMM::::yyyy#",  //
+        "#gcc#qqq#yyyyy::::111#",  //
+        "#gcc#qqq#ppppygbb:111#",  //
+        "#gcc#qqq#ppppygbb:111#",  //
+        "#gcc#qqq#ppppygbb:yyy#",  //
+        "#gcc#222######gbby####",  //
         "#:::#222#DDDD#gbb:yyy#",  //
         "#vtt#222#DDDD#gbb:JJJ#",  //
         "#vtt#222#DDDD#gbb:JJJ#",  //
