@@ -42,14 +42,14 @@ std::vector<std::string_view> plan() {
         "#gcc#qqq#yyyyy::::111#",  //
         "#gcc#qqq#ppppygbb:111#",  //
         "#gcc#qqq#ppppygbb:111#",  //
-        "#gcc#qqq#ppppygbb:yyy#",  //
+        "#gcc#qqq#ppppygbbyyyy#",  //
         "#gcc#222######gbby####",  //
-        "#:::#222#DDDD#gbb:yyy#",  //
-        "#vtt#222#DDDD#gbb:JJJ#",  //
-        "#vtt#222#DDDD#gbb:JJJ#",  //
-        "##############::::JJJ#",  //
-        "#333:ggg#ccc:AAAA:JJJ#",  //
-        "#333:aaa#ccc:AAAA:JJJ#",  //
+        "#:::#222#DDDD#gbbyyyy#",  //
+        "#vtt#222#DDDD#gbbyJJJ#",  //
+        "#vtt#222#DDDD#gbbyJJJ#",  //
+        "##############:::yJJJ#",  //
+        "#333:ggg#ccc:AAAAyJJJ#",  //
+        "#333:aaa#ccc:AAAAyJJJ#",  //
         "#333:aaa#ggg:AAAA:vvv#",  //
     };
 }
@@ -254,29 +254,36 @@ struct Tuning {
 };
 
 constexpr Tuning kTunings[] = {
-    {"yard", 0.0005},
-    {"lane", 0.3},
-    {"lane_tree", 0.3},
-    {"street_turn_s", 0.02},
-    {"yard_tree", 0.0005},
+    // Streets, and what only fills gaps.
     {"street_zebra_e", 6},
     {"street_zebra_s", 6},
     {"street_fork_n", 2},
     {"street_fork_w", 2},
     {"street_crossing", 2},
-    {"yard_bench", 0.0005},
-    {"verge_e", 0.2},
+    {"street_turn_s", 0.02},
     {"street_end", 0.08},
     {"street_end_e", 0.0005},
     {"street_end_s", 0.0005},
-    {"mansard_corner_n", 0.9},
-    {"tower_belfry_n", 2.5},
+    {"yard", 0.0005},
+    {"yard_tree", 0.0006},
+    {"yard_bench", 0.0006},
+    {"lane", 0.05},
+    {"lane_tree", 0.05},
+    {"verge", 0.1},
+    {"verge_e", 0.03},
+    // What begins in the north-west: how many lots there are of each kind.
+    {"shop_corner_n", 1.6},
+    {"house_ground_corner_n", 18},
+    {"garden_left", 15},
+    {"garden_right", 15},
+    {"park_corner_n", 28},
+    {"square_corner_n", 25},
+    // How high they rise.
+    {"mansard_corner_n", 0.8},
+    {"tile_mansard_corner_n", 0.7},
     {"mint_corner_n", 1.7},
     {"loft_corner_n", 1.4},
-    {"shop_corner_n", 0.6},
-    {"house_ground_corner_n", 9},
-    {"park_corner_n", 4},
-    {"square_corner_n", 3},
+    {"tower_belfry_n", 2.5},
 };
 
 void tune(discrete::Example& example) {
