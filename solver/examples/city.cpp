@@ -261,7 +261,8 @@ constexpr Tuning kTunings[] = {
     {"street_fork_w", 2},
     {"street_crossing", 2},
     {"street_turn_s", 0.02},
-    {"street_end", 0.08},
+    {"street_end_n", 0.08},
+    {"street_end_w", 0.08},
     {"street_end_e", 0.0005},
     {"street_end_s", 0.0005},
     {"yard", 0.0005},
@@ -272,17 +273,20 @@ constexpr Tuning kTunings[] = {
     {"verge", 0.1},
     {"verge_e", 0.03},
     // What begins in the north-west: how many lots there are of each kind.
-    {"shop_corner_n", 1.6},
-    {"house_ground_corner_n", 18},
+    {"shop_corner_n", 2},
+    {"house_ground_corner_n", 26},
     {"garden_left", 15},
     {"garden_right", 15},
-    {"park_corner_n", 28},
-    {"square_corner_n", 25},
+    {"park_corner_n", 40},
+    {"square_corner_n", 32},
+    // Long houses look like barracks.
+    {"house_front", 0.4},
+    {"house_back", 0.4},
     // How high they rise.
-    {"mansard_corner_n", 0.8},
-    {"tile_mansard_corner_n", 0.7},
-    {"mint_corner_n", 1.7},
-    {"loft_corner_n", 1.4},
+    {"mansard_corner_n", 0.9},
+    {"tile_mansard_corner_n", 0.85},
+    {"mint_corner_n", 1.3},
+    {"loft_corner_n", 1.2},
     {"tower_belfry_n", 2.5},
 };
 
