@@ -27,14 +27,13 @@ namespace {
 constexpr int kFloorCount = 10;
 
 // Junctions are four cells apart or more, lots three cells deep: that is what keeps the streets of
-// a model from curling up. Yards stand beside every kind of lot and street, so that lots fit into
-// whatever is left, however small the model.
+// a model from curling up.
 std::vector<std::string_view> plan() {
     return {
         "######################",  //
-        "#tty:444#bbbb:KKK:ppp#",  //
-        "#tty:444#bbbb:KKK:ppp#",  //
-        "#yyy:444#gggg:KKK:ppp#",  //
+        "#aaa:444#bbbb:KKK:ppp#",  //
+        "#aaa:444#bbbb:KKK:ppp#",  //
+        "#ggg:444#gggg:KKK:ppp#",  //
         "#ggg::::##############",  //
         "#bbb:CCC#vvvv:555yqqq#",  //
         "#bbb:CCC#MMMM:555yqqq#",  //
@@ -45,9 +44,9 @@ std::vector<std::string_view> plan() {
         "#gcc#qqq#ppppygbb:111#",  //
         "#gcc#qqq#ppppygbbyyyy#",  //
         "#gcc#222######gbby####",  //
-        "#ggg#222#DDDD#gbbyyyy#",  //
-        "#aaa#222#DDDD#gbbyJJJ#",  //
-        "#aaa#222#DDDD#gbbyJJJ#",  //
+        "#:::#222#DDDD#gbbyyyy#",  //
+        "#vtt#222#DDDD#gbbyJJJ#",  //
+        "#vtt#222#DDDD#gbbyJJJ#",  //
         "##############:::yJJJ#",  //
         "#333:ggg#ccc:AAAAyJJJ#",  //
         "#333:aaa#ccc:AAAAyJJJ#",  //
@@ -261,7 +260,7 @@ constexpr Tuning kTunings[] = {
     {"street_fork_n", 2},
     {"street_fork_w", 2},
     {"street_crossing", 2},
-    {"street_turn_s", 0.005},
+    {"street_turn_s", 0.02},
     {"street_end_n", 0.08},
     {"street_end_w", 0.08},
     {"street_end_e", 0.0005},
@@ -271,21 +270,21 @@ constexpr Tuning kTunings[] = {
     {"yard_bench", 0.0006},
     {"lane", 0.05},
     {"lane_tree", 0.05},
-    {"verge", 0.2},
+    {"verge", 0.1},
     {"verge_e", 0.03},
     // What begins in the north-west: how many lots there are of each kind.
-    {"shop_corner_n", 8},
+    {"shop_corner_n", 2},
     {"house_ground_corner_n", 26},
     {"garden_left", 15},
     {"garden_right", 15},
-    {"park_corner_n", 60},
-    {"square_corner_n", 60},
+    {"park_corner_n", 40},
+    {"square_corner_n", 32},
     // Long houses look like barracks.
     {"house_front", 0.4},
     {"house_back", 0.4},
     // How high they rise.
-    {"mansard_corner_n", 0.75},
-    {"tile_mansard_corner_n", 0.75},
+    {"mansard_corner_n", 0.9},
+    {"tile_mansard_corner_n", 0.85},
     {"mint_corner_n", 1.3},
     {"loft_corner_n", 1.2},
     {"tower_belfry_n", 2.5},
