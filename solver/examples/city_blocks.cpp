@@ -30,9 +30,9 @@ void add_piers(MeshBuilder& mesh, float v0, float v1, RightEnd end) {
 
 // What every ground floor has: plinth, piers, the band under the first storey.
 void add_ground_frame(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
-    mesh.material(m.stone).tint(0.62F, 0.62F, 0.68F);
+    mesh.material(m.stone).tint(0.79F, 0.79F, 0.82F);
     add_band(mesh, 0, 0.4F, 0.16F, end);
-    mesh.material(m.stone).tint(0.92F);
+    mesh.material(m.stone).tint(0.96F);
     add_piers(mesh, 0.4F, 2.72F, end);
     mesh.material(m.stone).tint(1);
     add_band(mesh, 2.72F, kCityStorey, 0.2F, end);
@@ -61,7 +61,7 @@ void add_awning(MeshBuilder& mesh, const CityMaterials& m) {
             {u1, kLow.v, kLow.u},
             {u0, kLow.v, kLow.u}
         );
-        mesh.tint(0.5F);
+        mesh.tint(0.73F);
         mesh.quad(
             {u1, kLow.v, kLow.u},
             {u0, kLow.v, kLow.u},
@@ -81,12 +81,12 @@ void add_shop_front(MeshBuilder& mesh, const CityMaterials& m, bool has_awning, 
     const std::array<Opening, 1> window = {{{-1.5F, 1.5F, 0.55F, 2.2F, true}}};
     add_wall(mesh, m, m.stone, kWhole, window, 0.3F);
     add_window_bars(mesh, m, window[0], 0.3F, 4, 1);
-    mesh.material(m.asphalt).tint(0.7F);  // goods on show
+    mesh.material(m.iron).tint(0.83F);  // goods on show
     mesh.open_box({{-1.2F, 0.55F, 1.72F}, {-0.5F, 1.0F, 1.85F}}, "SEWU");
     mesh.open_box({{0.2F, 0.55F, 1.72F}, {0.5F, 1.35F, 1.85F}}, "SEWU");
     mesh.open_box({{0.9F, 0.55F, 1.72F}, {1.3F, 0.85F, 1.85F}}, "SEWU");
     add_ground_frame(mesh, m, end);
-    mesh.material(m.accent).tint(0.55F);
+    mesh.material(m.accent).tint(0.75F);
     add_block(mesh, -1.62F, 1.62F, 2.34F, 2.66F, 0.07F);
     mesh.material(m.glow).tint(1);
     for (const float u : {-0.9F, -0.3F, 0.3F, 0.9F}) {
@@ -107,16 +107,16 @@ void add_door_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     add_window_bars(mesh, m, openings[2], 0.25F, 1, 2);
     add_ground_frame(mesh, m, end);
     // Two leaves under a lit fanlight.
-    mesh.material(m.accent).tint(0.5F);
+    mesh.material(m.accent).tint(0.73F);
     mesh.open_box({{-0.56F, 0.42F, 1.75F}, {-0.03F, 1.85F, 1.83F}}, "SUEW");
     mesh.open_box({{0.03F, 0.42F, 1.75F}, {0.56F, 1.85F, 1.83F}}, "SUEW");
-    mesh.material(m.paving).tint(0.9F);
+    mesh.material(m.paving).tint(0.95F);
     add_block(mesh, -0.95F, 0.95F, 0, 0.28F, 0.6F);
     add_block(mesh, -0.75F, 0.75F, 0.28F, 0.42F, 0.38F);
-    mesh.material(m.stone).tint(0.95F);
+    mesh.material(m.stone).tint(0.97F);
     add_block(mesh, -0.82F, -0.6F, 0.42F, 2.34F, 0.14F);
     add_block(mesh, 0.6F, 0.82F, 0.42F, 2.34F, 0.14F);
-    mesh.material(m.asphalt).tint(0.8F);
+    mesh.material(m.iron).tint(0.89F);
     add_block(mesh, -0.95F, 0.95F, 2.34F, 2.5F, 0.7F);
     mesh.material(m.glow).tint(1);
     for (const float u : {-0.71F, 0.71F}) {
@@ -125,70 +125,75 @@ void add_door_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
 }
 
 void add_storey_frame(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
-    mesh.material(m.stone).tint(0.92F);
+    mesh.material(m.stone).tint(0.96F);
     add_piers(mesh, 0, 2.82F, end);
-    mesh.material(m.stone).tint(0.85F);
+    mesh.material(m.stone).tint(0.92F);
     add_band(mesh, 2.82F, kCityStorey, 0.16F, end);
 }
 
-void add_storey_front(
-    MeshBuilder& mesh, const CityMaterials& m, bool left_is_lit, bool right_is_lit, RightEnd end
-) {
+void add_storey_front(MeshBuilder& mesh, const CityMaterials& m, MaterialId wall, RightEnd end) {
     const std::array<Opening, 2> windows = {
-        {{-1.4F, -0.25F, 0.75F, 2.5F, left_is_lit}, {0.25F, 1.4F, 0.75F, 2.5F, right_is_lit}}};
-    add_wall(mesh, m, m.stone, kWhole, windows, 0.25F);
+        {{-1.4F, -0.25F, 0.75F, 2.5F, false}, {0.25F, 1.4F, 0.75F, 2.5F, false}}};
+    add_wall(mesh, m, wall, kWhole, windows, 0.25F);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, 0.25F, 2, 2);
     }
-    // Panels of slate between the storeys draw the eye upwards.
+    // Panels between the storeys draw the eye upwards.
     mesh.material(m.slate).tint(1);
     add_block(mesh, -1.4F, -0.25F, 0.12F, 0.56F, 0.05F);
     add_block(mesh, 0.25F, 1.4F, 0.12F, 0.56F, 0.05F);
     add_storey_frame(mesh, m, end);
 }
 
-// One wide window of twelve panes; the lit part is one of three, or all.
-void add_loft_front(
-    MeshBuilder& mesh, const CityMaterials& m, const std::array<bool, 3>& is_lit, RightEnd end
-) {
+// Three windows side by side.
+void add_loft_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     constexpr float kDepth = 0.22F;
     const std::array<Opening, 3> windows = {
-        {{-1.5F, -0.62F, 0.7F, 2.45F, is_lit[0]},
-         {-0.44F, 0.44F, 0.7F, 2.45F, is_lit[1]},
-         {0.62F, 1.5F, 0.7F, 2.45F, is_lit[2]}}};
+        {{-1.5F, -0.62F, 0.7F, 2.45F, false},
+         {-0.44F, 0.44F, 0.7F, 2.45F, false},
+         {0.62F, 1.5F, 0.7F, 2.45F, false}}};
     add_wall(mesh, m, m.brick, kWhole, windows, kDepth);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, kDepth, 2, 3);
     }
-    mesh.material(m.stone).tint(0.8F);
+    mesh.material(m.stone).tint(0.89F);
     add_block(mesh, -1.62F, 1.62F, 2.45F, 2.62F, 0.06F);
-    mesh.material(m.brick).tint(0.82F);
+    mesh.material(m.brick).tint(0.9F);
     add_piers(mesh, 0, 2.82F, end);
-    mesh.material(m.brick).tint(0.7F);
+    mesh.material(m.brick).tint(0.83F);
     add_band(mesh, 2.82F, kCityStorey, 0.16F, end);
 }
 
-void add_terrace_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
-    const std::array<Opening, 2> openings = {
-        {{-1.4F, -0.25F, 0.2F, 2.5F, true}, {0.25F, 1.4F, 0.75F, 2.5F, false}}};
-    add_wall(mesh, m, m.stone, kWhole, openings, 0.25F);
-    for (const Opening& opening : openings) {
-        add_window_bars(mesh, m, opening, 0.25F, 2, 2);
+// A slab with a railing before the windows of a storey.
+void add_balcony(MeshBuilder& mesh, const CityMaterials& m) {
+    constexpr float kReach = 0.75F;
+    mesh.material(m.stone).tint(0.95F);
+    add_block(mesh, -1.6F, 1.6F, 0.5F, 0.66F, kReach);
+    mesh.material(m.iron).tint(1);
+    constexpr float kOut = kCityHalf + kReach - 0.05F;
+    mesh.box({{-1.6F, 1.42F, kOut - 0.05F}, {1.6F, 1.5F, kOut + 0.02F}});
+    for (int bar = 0; bar < 9; ++bar) {
+        const float u = -1.56F + 0.39F * static_cast<float>(bar);
+        mesh.open_box({{u - 0.025F, 0.66F, kOut - 0.04F}, {u + 0.025F, 1.42F, kOut}}, "EWSN");
     }
-    mesh.material(m.accent).tint(0.8F);
-    add_block(mesh, -1.6F, -0.05F, 2.55F, 2.68F, 0.6F);
-    add_storey_frame(mesh, m, end);
+    for (const float u : {-1.58F, 1.54F}) {
+        mesh.open_box({{u, 1.42F, kCityHalf}, {u + 0.05F, 1.5F, kOut}}, "EWUD");
+    }
+    mesh.material(m.leaf).tint(0.9F);  // boxes of flowers
+    mesh.open_box({{-1.3F, 0.66F, kOut - 0.3F}, {-0.4F, 1.0F, kOut - 0.06F}}, "EWSNU");
+    mesh.material(m.tile).tint(1);
+    mesh.open_box({{0.5F, 0.66F, kOut - 0.3F}, {1.3F, 0.95F, kOut - 0.06F}}, "EWSNU");
 }
 
-// Wet walls are darker towards the ground.
+// Walls are darker towards the ground.
 MeshBuilder shaded_ground(MeshBuilder mesh) {
-    mesh.shade_upwards(0.7F, 1.5F);
+    mesh.shade_upwards(0.85F, 1.5F);
     return mesh;
 }
 
 MeshBuilder shaded_storey(MeshBuilder mesh) {
     mesh.shade([](const Vec3& position, const Vec3& normal) {
-        const float under = normal.y < -0.5F ? 0.65F : 1.0F;
+        const float under = normal.y < -0.5F ? 0.8F : 1.0F;
         return under * (position.y < 0.05F ? 0.9F : 1.0F);
     });
     return mesh;
@@ -202,83 +207,51 @@ MeshBuilder make_shop(const CityMaterials& materials) {
     }));
 }
 
-MeshBuilder make_block_door(const CityMaterials& materials) {
-    return shaded_ground(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_door_front(mesh, materials, end);
-    }));
-}
-
 MeshBuilder make_shop_corner(const CityMaterials& materials) {
     const auto front = [&](MeshBuilder& mesh, RightEnd end) {
         add_shop_front(mesh, materials, false, end);
     };
-    return shaded_ground(make_corner(front, front));
+    // The way up to the flats is round the corner.
+    const auto door = [&](MeshBuilder& mesh, RightEnd end) {
+        add_door_front(mesh, materials, end);
+    };
+    return shaded_ground(make_corner(front, door));
 }
 
 MeshBuilder make_core(const CityMaterials& materials) {
     MeshBuilder mesh;
-    mesh.material(materials.paving).tint(0.6F);
+    mesh.material(materials.paving).tint(0.78F);
     mesh.open_box({{-0.8F, 0, -0.8F}, {0.8F, kCityStorey, 0.8F}}, "EWSN");
     return mesh;
 }
 
-MeshBuilder make_block_wall(const CityMaterials& materials, bool is_lit) {
+MeshBuilder make_block_wall(const CityMaterials& materials, MaterialId wall, bool has_balcony) {
     return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_storey_front(mesh, materials, is_lit, is_lit, end);
+        add_storey_front(mesh, materials, wall, end);
+        if (has_balcony) {
+            add_balcony(mesh, materials);
+        }
     }));
 }
 
-MeshBuilder make_block_corner(const CityMaterials& materials) {
+MeshBuilder make_block_corner(const CityMaterials& materials, MaterialId wall) {
     return shaded_storey(make_corner(
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_storey_front(mesh, materials, false, true, end);
-        },
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_storey_front(mesh, materials, true, false, end);
-        }
+        [&](MeshBuilder& mesh, RightEnd end) { add_storey_front(mesh, materials, wall, end); },
+        [&](MeshBuilder& mesh, RightEnd end) { add_storey_front(mesh, materials, wall, end); }
     ));
 }
 
-MeshBuilder make_loft_wall(const CityMaterials& materials, bool is_lit) {
+MeshBuilder make_loft_wall(const CityMaterials& materials) {
     return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_loft_front(mesh, materials, {is_lit, is_lit, false}, end);
+        add_loft_front(mesh, materials, end);
     }));
 }
 
 MeshBuilder make_loft_corner(const CityMaterials& materials) {
     return shaded_storey(make_corner(
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_loft_front(mesh, materials, {false, false, true}, end);
-        },
-        [&](MeshBuilder& mesh, RightEnd end) {
-            add_loft_front(mesh, materials, {false, false, false}, end);
-        }
+        [&](MeshBuilder& mesh, RightEnd end) { add_loft_front(mesh, materials, end); },
+        [&](MeshBuilder& mesh, RightEnd end) { add_loft_front(mesh, materials, end); }
     ));
-}
-
-MeshBuilder make_terrace_wall(const CityMaterials& materials) {
-    return shaded_storey(make_side([&](MeshBuilder& mesh, RightEnd end) {
-        add_terrace_front(mesh, materials, end);
-    }));
-}
-
-MeshBuilder make_terrace_corner(const CityMaterials& materials, bool is_left) {
-    const auto terrace = [&](MeshBuilder& mesh, RightEnd end) {
-        add_terrace_front(mesh, materials, end);
-    };
-    const auto facade = [&](MeshBuilder& mesh, RightEnd end) {
-        add_storey_front(mesh, materials, false, false, end);
-    };
-    if (is_left) {
-        return shaded_storey(make_corner(terrace, facade));
-    }
-    // The facade is south of the terrace: a corner of south and east.
-    MeshBuilder mesh;
-    mesh.turned(3, [&](MeshBuilder& part) {
-        part.turned(1, [&](MeshBuilder& side) { facade(side, RightEnd::kCorner); });
-        part.turned(2, [&](MeshBuilder& side) { terrace(side, RightEnd::kGoesOn); });
-    });
-    return shaded_storey(std::move(mesh));
 }
 
 }  // namespace modelsynth::examples

@@ -8,18 +8,15 @@ namespace modelsynth::examples {
 // Sides are built facing east, corners facing east and north.
 
 [[nodiscard]] MeshBuilder make_shop(const CityMaterials& materials);
-[[nodiscard]] MeshBuilder make_block_door(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_shop_corner(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_core(const CityMaterials& materials);
 
-[[nodiscard]] MeshBuilder make_block_wall(const CityMaterials& materials, bool is_lit);
-[[nodiscard]] MeshBuilder make_block_corner(const CityMaterials& materials);
+[[nodiscard]] MeshBuilder make_block_wall(
+    const CityMaterials& materials, MaterialId wall, bool has_balcony
+);
+[[nodiscard]] MeshBuilder make_block_corner(const CityMaterials& materials, MaterialId wall);
 // Brick between wide workshop windows, on the same ground floors and under the same roofs.
-[[nodiscard]] MeshBuilder make_loft_wall(const CityMaterials& materials, bool is_lit);
+[[nodiscard]] MeshBuilder make_loft_wall(const CityMaterials& materials);
 [[nodiscard]] MeshBuilder make_loft_corner(const CityMaterials& materials);
-// The lowest storey above a lower roof, with a door to it.
-[[nodiscard]] MeshBuilder make_terrace_wall(const CityMaterials& materials);
-// ... with a facade on the side counter-clockwise of it (left) or clockwise (right).
-[[nodiscard]] MeshBuilder make_terrace_corner(const CityMaterials& materials, bool is_left);
 
 }  // namespace modelsynth::examples

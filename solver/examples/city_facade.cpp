@@ -36,7 +36,7 @@ void add_wall(
         add_front_quad(mesh, {u, opening.u0, whole.v0, whole.v1}, kFront);
         add_front_quad(mesh, {opening.u0, opening.u1, whole.v0, opening.v0}, kFront);
         add_front_quad(mesh, {opening.u0, opening.u1, opening.v1, whole.v1}, kFront);
-        mesh.tint(0.7F);
+        mesh.tint(0.83F);
         add_reveals(mesh, opening, depth);
         mesh.material(opening.is_lit ? materials.glow : materials.glass).tint(1);
         add_front_quad(mesh, opening, kFront - depth);
@@ -68,7 +68,7 @@ void add_window_bars(
 ) {
     constexpr float kBar = 0.035F;
     const float back = kFront - depth;
-    mesh.material(materials.asphalt).tint(0.8F);
+    mesh.material(materials.iron).tint(0.89F);
     for (int column = 1; column < columns; ++column) {
         const float u = opening.u0 + (opening.u1 - opening.u0) * static_cast<float>(column) /
                                          static_cast<float>(columns);
@@ -79,7 +79,7 @@ void add_window_bars(
                                          static_cast<float>(rows);
         mesh.open_box({{opening.u0, v - kBar, back}, {opening.u1, v + kBar, back + 0.05F}}, "SUD");
     }
-    mesh.material(materials.stone).tint(0.95F);
+    mesh.material(materials.stone).tint(0.97F);
     add_block(mesh, opening.u0 - 0.08F, opening.u1 + 0.08F, opening.v0 - 0.1F, opening.v0, 0.1F);
 }
 

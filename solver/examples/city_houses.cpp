@@ -21,14 +21,14 @@ constexpr float kVerge = 0.22F;  // how far a roof reaches beyond its gable
 float roof_y(float z) { return 0.2F + (kCityHalf - z) * kPitch; }
 
 void add_lintel(MeshBuilder& mesh, const CityMaterials& m, const Opening& window) {
-    mesh.material(m.stone).tint(0.9F);
+    mesh.material(m.stone).tint(0.95F);
     add_block(mesh, window.u0 - 0.12F, window.u1 + 0.12F, window.v1, window.v1 + 0.22F, 0.05F);
 }
 
 // Toothed stones on a corner: the facade with the corner on its right has the long ones.
 void add_quoins(MeshBuilder& mesh, const CityMaterials& m, bool is_right, float v0) {
     constexpr float kReach = 0.05F;
-    mesh.material(m.stone).tint(0.85F);
+    mesh.material(m.stone).tint(0.92F);
     for (int i = 0; i < 4; ++i) {
         const float v = v0 + 0.66F * static_cast<float>(i);
         const float width = (i % 2 == 0) == is_right ? 0.5F : 0.28F;
@@ -48,38 +48,65 @@ void add_quoins(MeshBuilder& mesh, const CityMaterials& m, bool is_right, float 
 }
 
 void add_shutters(MeshBuilder& mesh, const CityMaterials& m, const Opening& window) {
-    mesh.material(m.accent).tint(0.75F);
+    mesh.material(m.accent).tint(0.86F);
     add_block(mesh, window.u0 - 0.38F, window.u0 - 0.02F, window.v0, window.v1, 0.06F);
     add_block(mesh, window.u1 + 0.02F, window.u1 + 0.38F, window.v0, window.v1, 0.06F);
 }
 
 void add_house_bands(MeshBuilder& mesh, const CityMaterials& m, bool is_ground, RightEnd end) {
     if (is_ground) {
-        mesh.material(m.stone).tint(0.6F, 0.6F, 0.66F);
+        mesh.material(m.stone).tint(0.78F, 0.78F, 0.81F);
         add_band(mesh, 0, 0.5F, 0.1F, end);
     }
-    mesh.material(m.stone).tint(0.85F);
+    mesh.material(m.stone).tint(0.92F);
     add_band(mesh, 2.82F, kCityStorey, 0.1F, end);
 }
 
-void add_two_windows(
-    MeshBuilder& mesh,
-    const CityMaterials& m,
-    bool is_ground,
-    bool left_is_lit,
-    bool right_is_lit,
-    RightEnd end
-) {
+// Posts, rails and braces about two windows.
+void add_timbers(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
+    constexpr float kReach = 0.05F;
+    mesh.material(m.wood).tint(1);
+    add_block(mesh, -kCityHalf, kCityHalf, 0.5F, 0.64F, kReach);
+    add_block(mesh, -kCityHalf, kCityHalf, 2.36F, 2.5F, kReach);
+    for (const float u : {-1.5F, -0.5F, 0.36F, 1.36F}) {
+        add_block(mesh, u, u + 0.14F, 0.12F, 2.82F, kReach);
+    }
+    for (const float u : {-kCityHalf, kCityHalf - 0.1F}) {
+        add_block(mesh, u, u + 0.1F, 0.12F, 2.82F, kReach);
+    }
+    for (const float way : {-1.0F, 1.0F}) {  // a brace on either side of the middle
+        const float z = kCityHalf + kReach;
+        const Vec3 foot0 = {way * 0.05F, 0.64F, z};
+        const Vec3 foot1 = {way * 0.22F, 0.64F, z};
+        const Vec3 head0 = {way * 0.18F, 2.36F, z};
+        const Vec3 head1 = {way * 0.35F, 2.36F, z};
+        if (way > 0) {
+            mesh.quad(foot0, foot1, head1, head0);
+        } else {
+            mesh.quad(foot1, foot0, head0, head1);
+        }
+    }
+    add_band(mesh, 0, 0.14F, 0.1F, end);
+}
+
+void add_two_windows(MeshBuilder& mesh, const CityMaterials& m, HouseStorey storey, RightEnd end) {
+    const bool is_ground = storey == HouseStorey::kGround;
+    const bool is_timber = storey == HouseStorey::kTimber;
     const float sill = is_ground ? 1.0F : 0.8F;
     const std::array<Opening, 2> windows = {
-        {{-1.35F, -0.55F, sill, 2.3F, left_is_lit}, {0.55F, 1.35F, sill, 2.3F, right_is_lit}}};
-    add_wall(mesh, m, m.brick, kWhole, windows, 0.2F);
+        {{-1.35F, -0.55F, sill, 2.3F, false}, {0.55F, 1.35F, sill, 2.3F, false}}};
+    add_wall(mesh, m, is_timber ? m.plaster : m.ochre, kWhole, windows, 0.2F);
     for (const Opening& window : windows) {
         add_window_bars(mesh, m, window, 0.2F, 2, 2);
-        add_lintel(mesh, m, window);
-        if (!is_ground) {
+        if (!is_timber) {
+            add_lintel(mesh, m, window);
+        }
+        if (storey == HouseStorey::kMiddle) {
             add_shutters(mesh, m, window);
         }
+    }
+    if (is_timber) {
+        add_timbers(mesh, m, end);
     }
     add_house_bands(mesh, m, is_ground, end);
 }
@@ -87,23 +114,23 @@ void add_two_windows(
 void add_door_front(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
     const std::array<Opening, 2> openings = {
         {{-1.2F, -0.2F, 0.42F, 2.4F, true}, {0.55F, 1.35F, 1.0F, 2.3F, true}}};
-    add_wall(mesh, m, m.brick, kWhole, openings, 0.2F);
+    add_wall(mesh, m, m.ochre, kWhole, openings, 0.2F);
     add_window_bars(mesh, m, openings[1], 0.2F, 2, 2);
     add_lintel(mesh, m, openings[0]);
     add_lintel(mesh, m, openings[1]);
     add_house_bands(mesh, m, true, end);
-    mesh.material(m.accent).tint(0.9F);
+    mesh.material(m.accent).tint(0.95F);
     mesh.open_box({{-1.15F, 0.42F, 1.8F}, {-0.25F, 2.05F, 1.88F}}, "SUEW");
-    mesh.tint(0.6F);
+    mesh.tint(0.78F);
     mesh.open_box({{-1.0F, 0.6F, 1.86F}, {-0.4F, 1.2F, 1.9F}}, "SUEW");
     mesh.open_box({{-1.0F, 1.3F, 1.86F}, {-0.4F, 1.9F, 1.9F}}, "SUEW");
-    mesh.material(m.paving).tint(0.9F);
+    mesh.material(m.paving).tint(0.95F);
     add_block(mesh, -1.4F, 0, 0, 0.28F, 0.55F);
     add_block(mesh, -1.3F, -0.1F, 0.28F, 0.42F, 0.32F);
     // A hood over the door, and a lantern.
-    mesh.material(m.slate).tint(1);
+    mesh.material(m.tile).tint(1);
     mesh.quad({-1.4F, 2.55F, 2.55F}, {0, 2.55F, 2.55F}, {0, 2.78F, 2}, {-1.4F, 2.78F, 2});
-    mesh.tint(0.6F);
+    mesh.tint(0.78F);
     mesh.quad({0, 2.55F, 2.55F}, {-1.4F, 2.55F, 2.55F}, {-1.4F, 2.55F, 2}, {0, 2.55F, 2});
     mesh.triangle({0, 2.55F, 2.55F}, {0, 2.55F, 2}, {0, 2.78F, 2});
     mesh.triangle({-1.4F, 2.55F, 2}, {-1.4F, 2.55F, 2.55F}, {-1.4F, 2.78F, 2});
@@ -116,7 +143,7 @@ void add_courses(MeshBuilder& mesh, const CityMaterials& m, float u0, float u1) 
     constexpr int kCourses = 6;
     constexpr float kLip = 0.07F;
     const float run = (kEaves - kRidge) / kCourses;
-    mesh.material(m.slate);
+    mesh.material(m.tile);
     for (int course = 0; course < kCourses; ++course) {
         const float low = kEaves - run * static_cast<float>(course);
         const float high = low - run;
@@ -127,7 +154,7 @@ void add_courses(MeshBuilder& mesh, const CityMaterials& m, float u0, float u1) 
             {u1, roof_y(high), high},
             {u0, roof_y(high), high}
         );
-        mesh.tint(0.6F);
+        mesh.tint(0.78F);
         mesh.quad(
             {u0, roof_y(low), low},
             {u1, roof_y(low), low},
@@ -136,22 +163,22 @@ void add_courses(MeshBuilder& mesh, const CityMaterials& m, float u0, float u1) 
         );
     }
     // Gutter, soffit, and the ridge tiles' half.
-    mesh.material(m.asphalt).tint(0.8F);
+    mesh.material(m.iron).tint(0.89F);
     const float eaves_y = roof_y(kEaves);
     mesh.open_box({{u0, eaves_y - kSlab, kEaves}, {u1, eaves_y + 0.02F, kEaves + 0.12F}}, "SUD");
-    mesh.material(m.brick).tint(0.45F);
+    mesh.material(m.wood).tint(1);
     mesh.quad(
         {u0, eaves_y - kSlab, kCityHalf - 0.1F},
         {u1, eaves_y - kSlab, kCityHalf - 0.1F},
         {u1, eaves_y - kSlab, kEaves},
         {u0, eaves_y - kSlab, kEaves}
     );
-    mesh.material(m.brick).tint(0.7F);
+    mesh.material(m.plaster).tint(0.83F);
     mesh.open_box(
         {{u0, roof_y(kRidge) - 0.1F, kRidge}, {u1, roof_y(kRidge) + 0.1F, kRidge + 0.16F}}, "SU"
     );
     // The wall between the storey below and the slope.
-    mesh.material(m.brick).tint(0.8F);
+    mesh.material(m.plaster).tint(0.89F);
     mesh.quad(
         {u0, -0.2F, kCityHalf}, {u1, -0.2F, kCityHalf}, {u1, 0.2F, kCityHalf}, {u0, 0.2F, kCityHalf}
     );
@@ -163,12 +190,12 @@ void add_dormer(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kHalf = 0.75F;
     const float foot = roof_y(kFront);
     constexpr float kTop = 2.1F;
-    mesh.material(m.brick).tint(0.9F);
+    mesh.material(m.plaster).tint(0.95F);
     mesh.open_box({{-kHalf, foot - 0.1F, kBack}, {kHalf, kTop, kFront}}, "EWS");
     mesh.triangle({-kHalf, kTop, kFront}, {kHalf, kTop, kFront}, {0, kTop + 0.5F, kFront});
-    mesh.material(m.glow).tint(1);
+    mesh.material(m.glass).tint(1);
     mesh.open_box({{-0.42F, foot + 0.25F, kFront}, {0.42F, kTop - 0.1F, kFront + 0.01F}}, "S");
-    mesh.material(m.stone).tint(0.9F);
+    mesh.material(m.stone).tint(0.95F);
     mesh.open_box({{-0.55F, foot + 0.1F, kFront}, {0.55F, foot + 0.25F, kFront + 0.12F}}, "SUDEW");
     mesh.open_box({{-0.55F, foot + 0.25F, kFront}, {-0.42F, kTop, kFront + 0.07F}}, "SUDEW");
     mesh.open_box({{0.42F, foot + 0.25F, kFront}, {0.55F, kTop, kFront + 0.07F}}, "SUDEW");
@@ -178,14 +205,14 @@ void add_dormer(MeshBuilder& mesh, const CityMaterials& m) {
         constexpr float kOut = 0.95F;
         constexpr float kFall = kTop - 0.13F;
         const float ridge = kTop + 0.6F;
-        part.material(m.slate).tint(0.95F);
+        part.material(m.tile).tint(0.97F);
         part.quad(
             {kOut, kFall, kFront + 0.2F},
             {kOut, kFall, kBack},
             {0, ridge, kBack},
             {0, ridge, kFront + 0.2F}
         );
-        part.material(m.asphalt).tint(0.8F);
+        part.material(m.iron).tint(0.89F);
         part.quad(
             {kOut, kFall - 0.1F, kFront + 0.2F},
             {kOut, kFall, kFront + 0.2F},
@@ -217,7 +244,7 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
     constexpr float kHead = 1.7F;
     constexpr float kPane = kWall - 0.15F;
     const auto wall_at = [&](float z, float y) { return Vec3{kWall, y, z}; };
-    mesh.material(m.brick).tint(1);
+    mesh.material(m.plaster).tint(1);
     mesh.quad(
         wall_at(kCityHalf, -0.2F),
         wall_at(kJamb, -0.2F),
@@ -233,7 +260,7 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
         wall_at(kRidge, roof_y(kRidge)),
         wall_at(kJamb, roof_y(kJamb))
     );
-    mesh.tint(0.7F);
+    mesh.tint(0.83F);
     mesh.quad(
         {kPane, kSill, kJamb}, {kWall, kSill, kJamb}, {kWall, kSill, kRidge}, {kPane, kSill, kRidge}
     );
@@ -243,41 +270,41 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
     mesh.quad(
         {kWall, kSill, kJamb}, {kPane, kSill, kJamb}, {kPane, kHead, kJamb}, {kWall, kHead, kJamb}
     );
-    mesh.material(m.glow).tint(1);
+    mesh.material(m.glass).tint(1);
     mesh.quad(
         {kPane, kSill, kJamb}, {kPane, kSill, kRidge}, {kPane, kHead, kRidge}, {kPane, kHead, kJamb}
     );
-    mesh.material(m.stone).tint(0.9F);
+    mesh.material(m.stone).tint(0.95F);
     mesh.open_box({{kWall, kSill - 0.12F, kRidge}, {kWall + 0.1F, kSill, kJamb + 0.1F}}, "EUDS");
     mesh.open_box({{kWall, kHead, kRidge}, {kWall + 0.06F, kHead + 0.2F, kJamb + 0.1F}}, "EUDS");
-    mesh.material(m.asphalt).tint(0.8F);
+    mesh.material(m.iron).tint(0.89F);
     mesh.open_box({{kPane, kSill, kRidge}, {kPane + 0.05F, kHead, kRidge + 0.04F}}, "ES");
     // Barge board along the verge.
     constexpr float kEnd = kWall + kVerge;
     constexpr float kBoard = 0.26F;
     const auto edge = [&](float x, float z, float drop) { return Vec3{x, roof_y(z) - drop, z}; };
-    mesh.material(m.stone).tint(0.8F);
+    mesh.material(m.stone).tint(0.89F);
     mesh.quad(
         edge(kEnd, kEaves, kBoard),
         edge(kEnd, kRidge, kBoard),
         edge(kEnd, kRidge, -0.1F),
         edge(kEnd, kEaves, -0.1F)
     );
-    mesh.tint(0.45F);
+    mesh.tint(0.7F);
     mesh.quad(
         edge(kWall, kRidge, kBoard),
         edge(kEnd, kRidge, kBoard),
         edge(kEnd, kEaves, kBoard),
         edge(kWall, kEaves, kBoard)
     );
-    mesh.tint(0.8F);
+    mesh.tint(0.89F);
     mesh.quad(
         edge(kWall, kEaves, kBoard),
         edge(kEnd, kEaves, kBoard),
         edge(kEnd, kEaves, -0.1F),
         edge(kWall, kEaves, -0.1F)
     );
-    mesh.tint(0.9F);
+    mesh.tint(0.95F);
     mesh.quad(
         edge(kEnd - 0.12F, kEaves, -0.1F),
         edge(kEnd, kEaves, -0.1F),
@@ -293,20 +320,20 @@ void add_gable_end(MeshBuilder& mesh, const CityMaterials& m) {
 }
 
 void add_chimney(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.brick).tint(0.9F);
+    mesh.material(m.brick).tint(0.95F);
     mesh.bevelled_box({{0.6F, 1.2F, -1.3F}, {1.5F, 3.7F, -0.6F}}, 0.04F);
-    mesh.material(m.stone).tint(0.8F);
+    mesh.material(m.stone).tint(0.89F);
     mesh.bevelled_box({{0.5F, 3.4F, -1.4F}, {1.6F, 3.58F, -0.5F}}, 0.04F);
-    mesh.material(m.brick).tint(1.0F, 0.9F, 0.8F);
+    mesh.material(m.brick).tint(1, 0.95F, 0.89F);
     mesh.cylinder(0.85F, -0.95F, 0.13F, 3.7F, 4.1F, 8);
     mesh.cylinder(1.25F, -0.95F, 0.13F, 3.7F, 4.2F, 8);
 }
 
 MeshBuilder shaded(MeshBuilder mesh, bool is_ground) {
     if (is_ground) {
-        mesh.shade_upwards(0.7F, 1.5F);
+        mesh.shade_upwards(0.85F, 1.5F);
     } else {
-        mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.5F ? 0.7F : 1.0F; });
+        mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.5F ? 0.82F : 1.0F; });
     }
     return mesh;
 }
@@ -316,7 +343,7 @@ MeshBuilder shaded(MeshBuilder mesh, bool is_ground) {
 MeshBuilder make_house_front(const CityMaterials& materials) {
     return shaded(
         make_side([&](MeshBuilder& mesh, RightEnd end) {
-            add_two_windows(mesh, materials, true, true, false, end);
+            add_two_windows(mesh, materials, HouseStorey::kGround, end);
         }),
         true
     );
@@ -333,11 +360,11 @@ MeshBuilder make_house_ground_corner(const CityMaterials& materials) {
     return shaded(
         make_corner(
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, true, false, true, end);
+                add_two_windows(mesh, materials, HouseStorey::kGround, end);
                 add_quoins(mesh, materials, true, 0.5F);
             },
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, true, false, false, end);
+                add_two_windows(mesh, materials, HouseStorey::kGround, end);
                 add_quoins(mesh, materials, false, 0.5F);
             }
         ),
@@ -345,25 +372,29 @@ MeshBuilder make_house_ground_corner(const CityMaterials& materials) {
     );
 }
 
-MeshBuilder make_house_wall(const CityMaterials& materials) {
+MeshBuilder make_house_wall(const CityMaterials& materials, HouseStorey storey) {
     return shaded(
         make_side([&](MeshBuilder& mesh, RightEnd end) {
-            add_two_windows(mesh, materials, false, false, true, end);
+            add_two_windows(mesh, materials, storey, end);
         }),
         false
     );
 }
 
-MeshBuilder make_house_corner(const CityMaterials& materials) {
+MeshBuilder make_house_corner(const CityMaterials& materials, HouseStorey storey) {
     return shaded(
         make_corner(
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, false, false, false, end);
-                add_quoins(mesh, materials, true, 0.12F);
+                add_two_windows(mesh, materials, storey, end);
+                if (storey == HouseStorey::kMiddle) {
+                    add_quoins(mesh, materials, true, 0.12F);
+                }
             },
             [&](MeshBuilder& mesh, RightEnd end) {
-                add_two_windows(mesh, materials, false, true, false, end);
-                add_quoins(mesh, materials, false, 0.12F);
+                add_two_windows(mesh, materials, storey, end);
+                if (storey == HouseStorey::kMiddle) {
+                    add_quoins(mesh, materials, false, 0.12F);
+                }
             }
         ),
         false

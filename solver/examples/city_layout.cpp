@@ -61,38 +61,33 @@ char of_side(const Turned& letters, int side) {
     return letters[static_cast<std::size_t>(side % kSideCount)];
 }
 
-bool is_one_of(char letter, std::string_view letters) {
-    return letters.find(letter) != std::string_view::npos;
-}
-
-bool is_street(char use) { return is_one_of(use, "#=zk"); }
-
-bool is_lawn(char use) { return is_one_of(use, "gTSO"); }
+bool is_street(char use) { return use == '#'; }
 
 bool is_brick(char use) { return use >= 'A' && use <= 'H'; }
 
-bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use); }
+bool is_mint(char use) { return use >= 'J' && use <= 'Q'; }
+
+bool is_block(char use) { return (use >= '1' && use <= '8') || is_brick(use) || is_mint(use); }
 
 bool is_house(char use) { return use >= 'a' && use <= 'c'; }
 
-// The plan in its four turns.
+constexpr int kTowerStoreys = 4;
+
+// The plan in its four turns about a street crossing.
 class Plan {
   public:
     explicit Plan(const std::vector<std::string_view>& quarter)
-        : size_(2 * static_cast<int>(quarter.size())) {
+        : size_(2 * static_cast<int>(quarter.size()) + 1),
+          uses_(static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), '#')),
+          origins_(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_)) {
         const auto n = static_cast<int>(quarter.size());
-        uses_.assign(
-            static_cast<std::size_t>(size_), std::string(static_cast<std::size_t>(size_), ' ')
-        );
         for (int z = 0; z < n; ++z) {
-            check(
-                quarter[static_cast<std::size_t>(z)].size() == quarter.size(),
-                "a city plan that is not square"
-            );
-            for (int x = 0; x < n; ++x) {
+            const std::string_view row = quarter[static_cast<std::size_t>(z)];
+            check(row.size() == quarter.size() + 1, "a city plan that is not one wider than deep");
+            for (int x = 0; x <= n; ++x) {
                 Place place = {x, z};
                 for (int turn = 0; turn < kSideCount; ++turn) {
-                    set(place, quarter[static_cast<std::size_t>(z)][static_cast<std::size_t>(x)]);
+                    set(place, row[static_cast<std::size_t>(x)], {x, z});
                     place = {size_ - 1 - place.z, place.x};
                 }
             }
@@ -105,15 +100,19 @@ class Plan {
         return at.x >= 0 && at.x < size_ && at.z >= 0 && at.z < size_;
     }
 
-    // What stands at a place; paving outside.
+    // What stands at a place; nothing outside.
     [[nodiscard]] char use(const Place& at) const {
         return contains(at) ? uses_[static_cast<std::size_t>(at.z)][static_cast<std::size_t>(at.x)]
-                            : '.';
+                            : ' ';
     }
+
+    // The place in the quarter of which this is a turn.
+    [[nodiscard]] Place origin(const Place& at) const { return origins_[index(at)]; }
 
     [[nodiscard]] int storeys(const Place& at) const {
         const char use = this->use(at);
         return is_brick(use)   ? use - 'A' + 1
+               : is_mint(use)  ? use - 'J' + 1
                : is_block(use) ? use - '0'
                : is_house(use) ? use - 'a' + 1
                                : 0;
@@ -131,6 +130,16 @@ class Plan {
         return sides;
     }
 
+    // ... and of those that have the same letter.
+    [[nodiscard]] Sides sides_of(const Place& at) const {
+        return sides_without(at, [&](const Place& next) { return use(next) == use(at); });
+    }
+
+    // The sides a street leaves by.
+    [[nodiscard]] Sides arms(const Place& at) const {
+        return sides_without(at, [&](const Place& next) { return !is_street(use(next)); });
+    }
+
     // Cells of a house in a row through the place, along x (axis 0) or z (axis 1).
     [[nodiscard]] int house_length(const Place& at, int axis) const {
         int length = 1;
@@ -143,12 +152,19 @@ class Plan {
     }
 
   private:
-    void set(const Place& at, char use) {
+    void set(const Place& at, char use, const Place& origin) {
         uses_[static_cast<std::size_t>(at.z)][static_cast<std::size_t>(at.x)] = use;
+        origins_[index(at)] = origin;
+    }
+
+    [[nodiscard]] std::size_t index(const Place& at) const {
+        return static_cast<std::size_t>(at.z) * static_cast<std::size_t>(size_) +
+               static_cast<std::size_t>(at.x);
     }
 
     int size_;
     std::vector<std::string> uses_;
+    std::vector<Place> origins_;
 };
 
 // Chooses the letter of each cell of the plan.
@@ -164,150 +180,220 @@ class LetterChoice {
         if (is_house(use)) {
             return house(place, floor);
         }
-        if (floor > 0) {
-            return letters_.open.air;
+        if (use == 't') {
+            return tower(place, floor);
         }
-        return is_street(use) ? street(place) : is_lawn(use) ? lawn(place) : paving(use);
+        if (floor > 0) {
+            return letters_.air;
+        }
+        switch (use) {
+            case '#':
+                return street(place);
+            case 'p':
+                return open_place(place, letters_.park);
+            case 'q':
+                return open_place(place, letters_.square);
+            case 'g':
+                return garden(place);
+            case 'v':
+                return verge(place);
+            case 'y':
+                return yard(place);
+            default:
+                check(use == ':', "a city plan with a letter that means nothing");
+                return lane(place);
+        }
     }
 
   private:
-    // True for about `share` of all places; which does not matter, only that it is the same always.
-    static bool drawn(const Place& place, int floor, float share) {
-        const auto seed = static_cast<std::uint32_t>(place.x * 64 + place.z);
+    // True for about `share` of all places; which does not matter, only that it is the same always,
+    // and in all four turns: what fits in one direction must fit in all.
+    [[nodiscard]] bool drawn(const Place& place, int floor, float share) const {
+        const Place origin = plan_.origin(place);
+        const auto seed = static_cast<std::uint32_t>(origin.x * 64 + origin.z);
         return scatter(seed, static_cast<std::uint32_t>(floor)) < share;
     }
 
-    [[nodiscard]] char paving(char use) const {
-        const OpenLetters& open = letters_.open;
-        switch (use) {
-            case 'l':
-                return open.lamp;
-            case 't':
-                return open.tree;
-            case 'n':
-                return open.bench;
-            case 'p':
-                return open.puddle;
-            default:
-                check(use == '.', "a city plan with a letter that means nothing");
-                return open.paving;
-        }
-    }
-
-    [[nodiscard]] char lawn(const Place& place) const {
-        const OpenLetters& open = letters_.open;
-        const Sides ends = plan_.sides_without(place, [this](const Place& next) {
-            return is_lawn(plan_.use(next));
-        });
-        if (ends.count() == 0) {
-            const char use = plan_.use(place);
-            return use == 'T'   ? open.lawn_tree
-                   : use == 'S' ? open.lawn_shrubs
-                   : use == 'O' ? open.fountain
-                                : open.lawn;
-        }
-        check(ends.count() == 1 || ends.is_corner(), "a lawn less than two cells wide");
-        return of_side(ends.count() == 1 ? open.lawn_edge : open.lawn_corner, ends.first());
-    }
-
-    // Streets run on where they meet the end of the plan.
     [[nodiscard]] char street(const Place& place) const {
         const StreetLetters& street = letters_.street;
-        const Sides ends = plan_.sides_without(place, [&](const Place& next) {
-            const Place behind = {2 * place.x - next.x, 2 * place.z - next.z};
-            return is_street(plan_.use(plan_.contains(next) ? next : behind));
-        });
-        if (ends.count() == 0) {
-            return street.crossing;
+        const Sides arms = plan_.arms(place);
+        switch (arms.count()) {
+            case 4:
+                return street.crossing;
+            case 3:
+                return of_side(street.fork, arms.first() + 3);
+            case 1:
+                return of_side(street.end, arms.first());
+            default:
+                check(arms.count() == 2, "a street that leads nowhere");
         }
-        if (ends.count() == 1) {
-            return of_side(street.fork, ends.first());
+        if (arms.is_corner()) {
+            return of_side(street.turn, arms.first());
         }
-        if (ends.is_corner()) {
-            return of_side(street.turn, ends.first() + 2);
+        const int side = arms.contains(0) ? 0 : 1;
+        for (const int towards : {side, side + 2}) {
+            if (plan_.arms(place.next(towards)).count() > 2) {
+                check(
+                    plan_.arms(place.next(towards + 2)).count() == 2,
+                    "junctions less than four cells apart in a city plan"
+                );
+                return of_side(street.zebra, towards);
+            }
         }
-        check(ends.count() == 2, "a street that ends");
-        const char use = plan_.use(place);
-        const Axial& letters = use == '='   ? street.lamps
-                               : use == 'z' ? street.zebra
-                               : use == 'k' ? street.car
-                                            : street.plain;
-        return letters[ends.contains(0) ? 1 : 0];
+        // Beside a turn always the same, so that a ring of any size closes.
+        const bool is_beside_turn = plan_.arms(place.next(side)).is_corner() ||
+                                    plan_.arms(place.next(side + 2)).is_corner();
+        const Axial& letters = is_beside_turn           ? street.plain
+                               : drawn(place, 4, 0.3F)  ? street.lamps
+                               : drawn(place, 5, 0.35F) ? street.car
+                                                        : street.plain;
+        return letters[static_cast<std::size_t>(side)];
     }
 
-    // Doors lead to where one can walk.
-    [[nodiscard]] bool has_door(const Place& place, int side) const {
-        const char front = plan_.use(place.next(side));
-        return (is_street(front) || is_one_of(front, ".p")) && drawn(place, 0, 0.4F);
+    // Lanes run on into lanes; those that have none beside them, into streets. Some of their cells
+    // are yards, as are all where lanes meet.
+    [[nodiscard]] char lane(const Place& place) const {
+        Sides ways = plan_.sides_without(place, [this](const Place& next) {
+            return plan_.use(next) != ':';
+        });
+        if (ways.count() == 0) {
+            ways = plan_.arms(place);
+        }
+        const bool along_x = ways.contains(0) || ways.contains(2);
+        const bool along_z = ways.contains(1) || ways.contains(3);
+        if ((along_x && along_z) || drawn(place, 9, 0.4F)) {
+            return yard(place);
+        }
+        const Axial& letters = drawn(place, 0, 0.35F) ? letters_.lane.tree : letters_.lane.plain;
+        return letters[along_x ? 0 : 1];
+    }
+
+    [[nodiscard]] char yard(const Place& place) const {
+        return drawn(place, 10, 0.5F)   ? letters_.lane.yard
+               : drawn(place, 11, 0.6F) ? letters_.lane.yard_tree
+                                        : letters_.lane.yard_bench;
+    }
+
+    [[nodiscard]] char verge(const Place& place) const {
+        for (int side = 0; side < kSideCount; ++side) {
+            const char behind = plan_.use(place.next(side + 2));
+            if (is_street(plan_.use(place.next(side))) &&
+                (is_block(behind) || is_house(behind) || behind == 't')) {
+                return of_side(letters_.lane.verge, side);
+            }
+        }
+        check(false, "a verge that is not between a street and a building");
+        return 0;
+    }
+
+    [[nodiscard]] char open_place(const Place& place, const PlaceLetters& letters) const {
+        const Sides ends = plan_.sides_of(place);
+        if (ends.count() == 1) {
+            return of_side(letters.edge, ends.first());
+        }
+        if (ends.is_corner()) {
+            return of_side(letters.corner, ends.first());
+        }
+        check(ends.count() == 0, "a place that is not three cells deep");
+        const bool along_x = plan_.sides_of(place.next(0)).count() == 0 ||
+                             plan_.sides_of(place.next(2)).count() == 0;
+        const Place origin = plan_.origin(place);
+        return (origin.x + origin.z) % 2 == 0 ? letters.middle[along_x ? 0 : 1] : letters.feature;
+    }
+
+    [[nodiscard]] char garden(const Place& place) const {
+        const auto house_side = [&](const Place& at) {
+            int side = 0;
+            while (side < kSideCount && !is_house(plan_.use(at.next(side)))) {
+                ++side;
+            }
+            return side;
+        };
+        const int house = house_side(place);
+        check(house < kSideCount, "a garden without a house");
+        const auto goes_on = [&](int side) {
+            const Place next = place.next(side);
+            return plan_.use(next) == 'g' && house_side(next) == house;
+        };
+        const int outward = house + 2;
+        const HouseLetters& letters = letters_.house;
+        return of_side(
+            !goes_on(outward + 1)   ? letters.garden_left
+            : !goes_on(outward + 3) ? letters.garden_right
+                                    : letters.garden,
+            outward
+        );
     }
 
     [[nodiscard]] char block(const Place& place, int floor) const {
         const int storeys = plan_.storeys(place);
         if (floor > storeys) {
-            return letters_.open.air;
+            return letters_.air;
         }
-        return floor == storeys ? block_roof(place, floor) : block_storey(place, floor);
-    }
-
-    [[nodiscard]] char block_storey(const Place& place, int floor) const {
         const BlockLetters& block = letters_.block;
-        const Sides faces = plan_.sides_without(place, [&](const Place& next) {
-            return plan_.storeys(next) > floor;
-        });
+        const Sides faces = plan_.sides_of(place);
         check(
             faces.count() < 2 || faces.is_corner(),
             "a block less than two cells wide in a city plan"
         );
         const int side = faces.first();
+        if (floor == storeys) {
+            return block_roof(place, faces);
+        }
+        const bool along_z = plan_.sides_of(place.next(1)).count() == 0 ||
+                             plan_.sides_of(place.next(3)).count() == 0;
         if (faces.count() == 0) {
-            return floor == 0 ? block.ground_core : block.core;
+            return floor == 0 ? block.ground_core[along_z ? 1 : 0] : block.core;
         }
         if (floor == 0) {
-            return of_side(
-                faces.count() == 2      ? block.ground_corner
-                : has_door(place, side) ? block.door
-                                        : block.shop,
-                side
-            );
+            return of_side(faces.count() == 2 ? block.ground_corner : block.shop, side);
         }
-        const auto meets_roof = [&](int towards) {
-            return faces.contains(towards) && plan_.storeys(place.next(towards)) == floor;
-        };
-        if (faces.count() == 1 && meets_roof(side)) {
-            return of_side(block.terrace, side);
+        const char use = plan_.use(place);
+        const bool is_corner = faces.count() == 2;
+        if (is_brick(use)) {
+            return of_side(is_corner ? block.brick_corner : block.brick_wall, side);
         }
-        if (meets_roof(side) || meets_roof(side + 1)) {
-            return meets_roof(side) ? of_side(block.terrace_left, side)
-                                    : of_side(block.terrace_right, side + 1);
+        if (is_mint(use)) {
+            return of_side(is_corner ? block.mint_corner : block.mint_wall, side);
         }
-        const bool brick = is_brick(plan_.use(place));
-        if (faces.count() == 2) {
-            return of_side(brick ? block.brick_corner : block.corner, side);
-        }
-        if (drawn(place, floor, 0.5F)) {
-            return of_side(brick ? block.lit_brick_wall : block.lit_wall, side);
-        }
-        return of_side(brick ? block.brick_wall : block.wall, side);
+        const Turned& wall = drawn(place, floor, 0.4F) ? block.balcony : block.wall;
+        return of_side(is_corner ? block.corner : wall, side);
     }
 
-    [[nodiscard]] char block_roof(const Place& place, int floor) const {
+    [[nodiscard]] char block_roof(const Place& place, const Sides& edges) const {
         const BlockLetters& block = letters_.block;
-        const Sides edges = plan_.sides_without(place, [&](const Place& next) {
-            return plan_.storeys(next) >= floor;
-        });
         if (edges.count() == 0) {
-            return drawn(place, 1, 0.55F)  ? block.roof
-                   : drawn(place, 2, 0.4F) ? block.roof_tank
-                   : drawn(place, 3, 0.5F) ? block.roof_mast
+            return drawn(place, 1, 0.4F)   ? block.roof
+                   : drawn(place, 2, 0.4F) ? block.roof_cupola
+                   : drawn(place, 3, 0.5F) ? block.roof_garden
                                            : block.roof_light;
         }
-        const Turned& corner =
-            drawn(place, floor, 0.35F) ? block.parapet_tank : block.parapet_corner;
+        if (plan_.storeys(place) % 2 == 1) {
+            return of_side(
+                edges.count() == 2 ? block.tile_mansard_corner : block.tile_mansard, edges.first()
+            );
+        }
         return of_side(
-            edges.count() == 2          ? corner
-            : drawn(place, floor, 0.4F) ? block.parapet_stack
-                                        : block.parapet,
+            edges.count() == 2      ? block.mansard_corner
+            : drawn(place, 1, 0.5F) ? block.mansard_dormer
+                                    : block.mansard,
             edges.first()
+        );
+    }
+
+    [[nodiscard]] char tower(const Place& place, int floor) const {
+        const Sides faces = plan_.sides_of(place);
+        check(faces.is_corner(), "a tower that is not two cells by two");
+        const TowerLetters& tower = letters_.tower;
+        if (floor > kTowerStoreys) {
+            return letters_.air;
+        }
+        return of_side(
+            floor == 0                   ? tower.ground
+            : floor < kTowerStoreys - 1  ? tower.shaft
+            : floor == kTowerStoreys - 1 ? tower.belfry
+                                         : tower.spire,
+            faces.first()
         );
     }
 
@@ -315,7 +401,7 @@ class LetterChoice {
         const HouseLetters& house = letters_.house;
         const int storeys = plan_.storeys(place);
         if (floor > storeys) {
-            return letters_.open.air;
+            return letters_.air;
         }
         const Sides faces = plan_.sides_without(place, [&](const Place& next) {
             return is_house(plan_.use(next));
@@ -333,15 +419,14 @@ class LetterChoice {
             return first_is_slope ? of_side(house.gable_left, side)
                                   : of_side(house.gable_right, side + 1);
         }
-        if (floor > 0) {
+        if (floor == 1) {
             return of_side(is_corner ? house.corner : house.wall, side);
         }
-        return of_side(
-            is_corner               ? house.ground_corner
-            : has_door(place, side) ? house.door
-                                    : house.front,
-            side
-        );
+        if (floor == 2) {
+            return of_side(is_corner ? house.timber_corner : house.timber_wall, side);
+        }
+        const bool is_back = plan_.use(place.next(side)) == 'g';
+        return of_side(is_corner ? house.ground_corner : is_back ? house.back : house.front, side);
     }
 
     const Plan& plan_;

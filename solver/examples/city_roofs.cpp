@@ -9,119 +9,225 @@ namespace modelsynth::examples {
 
 namespace {
 
-constexpr float kRoofTop = 0.1F;
+// The flat middle of a roof, and the slopes up to it, built for the south side.
+constexpr float kDeck = 1.7F;
+constexpr float kEaves = kCityHalf + 0.14F;  // z of the slope's foot ...
+constexpr float kEavesTop = 0.24F;
+constexpr float kEdge = 0.85F;  // ... and of its head
+// What stands on the deck is built on a floor at 0.
+constexpr float kRoofTop = 0;
 
-void add_roof_floor(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.slate).tint(0.62F);
-    mesh.open_box({{-kCityHalf, 0, -kCityHalf}, {kCityHalf, kRoofTop, kCityHalf}}, "U");
-    mesh.tint(0.8F);
-    mesh.open_box({{-kCityHalf, 0, -0.03F}, {kCityHalf, kRoofTop + 0.03F, 0.03F}}, "USN");
+void add_deck(MeshBuilder& mesh, const CityMaterials& m, float x1, float z0, float x0, float z1) {
+    mesh.material(m.paving).tint(1, 0.97F, 0.95F);
+    mesh.quad({x0, kDeck, z1}, {x1, kDeck, z1}, {x1, kDeck, z0}, {x0, kDeck, z0});
 }
 
-void add_parapet(MeshBuilder& mesh, const CityMaterials& m, RightEnd end) {
-    constexpr float kThick = 0.3F;
-    constexpr float kTop = 0.85F;
-    mesh.material(m.stone).tint(0.85F);
-    add_band(mesh, 0, 0.22F, 0.3F, end);
-    mesh.tint(1);
-    const float right = kCityHalf;
-    mesh.open_box({{-kCityHalf, 0, kCityHalf - kThick}, {right, kTop, kCityHalf}}, "SNEW");
-    // A coping, and a raised middle that breaks the line against the sky.
-    mesh.material(m.paving).tint(0.8F);
+// Whether a slope goes on at either end or meets another over a corner.
+struct Mitres {
+    bool left = false;
+    bool right = false;
+};
+
+void add_slope(MeshBuilder& mesh, const CityMaterials& m, MaterialId cover, const Mitres& mitres) {
+    const auto end = [](bool is_mitred, float z) { return is_mitred ? z : kCityHalf; };
+    // Cornice and gutter.
+    mesh.material(m.stone).tint(1);
+    const float left = -end(mitres.left, kCityHalf + 0.3F);
+    const float right = end(mitres.right, kCityHalf + 0.3F);
+    mesh.open_box({{left, 0, kCityHalf}, {right, kEavesTop, kCityHalf + 0.3F}}, "SUDEW");
+    constexpr int kCourses = 4;
+    mesh.material(cover);
+    for (int course = 0; course < kCourses; ++course) {
+        const auto at = [](int row) {
+            const float t = static_cast<float>(row) / kCourses;
+            return Point2{kEaves + (kEdge - kEaves) * t, kEavesTop + (kDeck - kEavesTop) * t};
+        };
+        const Point2 low = at(course);
+        const Point2 high = at(course + 1);
+        mesh.tint(course % 2 == 0 ? 1.0F : 0.9F);
+        mesh.quad(
+            {-end(mitres.left, low.u), low.v, low.u},
+            {end(mitres.right, low.u), low.v, low.u},
+            {end(mitres.right, high.u), high.v, high.u},
+            {-end(mitres.left, high.u), high.v, high.u}
+        );
+    }
+    mesh.material(m.stone).tint(1);  // a rim round the deck
     mesh.open_box(
-        {{-kCityHalf, kTop, kCityHalf - kThick - 0.05F},
-         {right + (end == RightEnd::kCorner ? 0.06F : 0.0F), kTop + 0.1F, kCityHalf + 0.06F}},
+        {{-end(mitres.left, kEdge + 0.08F), kDeck - 0.06F, kEdge - 0.14F},
+         {end(mitres.right, kEdge + 0.08F), kDeck + 0.16F, kEdge + 0.08F}},
         "SNUDEW"
     );
+}
+
+// A window under a small gable, standing in the slope.
+void add_roof_window(MeshBuilder& mesh, const CityMaterials& m) {
+    constexpr float kFront = 1.85F;
+    constexpr float kBack = 0.7F;
     mesh.material(m.stone).tint(1);
-    mesh.bevelled_box(
-        {{-0.8F, kTop + 0.1F, kCityHalf - kThick}, {0.8F, kTop + 0.4F, kCityHalf}}, 0.06F
-    );
-    for (const float u : {-1.5F, -0.5F, 0.5F, 1.5F}) {  // brackets under the cornice
-        add_block(mesh, u - 0.1F, u + 0.1F, -0.18F, 0, 0.24F);
-    }
+    mesh.open_box({{-0.62F, kEavesTop, kBack}, {0.62F, 1.55F, kFront}}, "EWS");
+    mesh.triangle({-0.62F, 1.55F, kFront}, {0.62F, 1.55F, kFront}, {0, 2.05F, kFront});
+    mesh.material(m.glass).tint(1);
+    mesh.open_box({{-0.38F, 0.5F, kFront}, {0.38F, 1.45F, kFront + 0.02F}}, "S");
+    mesh.material(m.plaster).tint(1);
+    mesh.open_box({{-0.03F, 0.5F, kFront}, {0.03F, 1.45F, kFront + 0.05F}}, "SEW");
+    mesh.open_box({{-0.38F, 0.95F, kFront}, {0.38F, 1.01F, kFront + 0.05F}}, "SUD");
+    mesh.open_box({{-0.5F, 0.4F, kFront}, {0.5F, 0.5F, kFront + 0.1F}}, "SUDEW");
+    const auto half = [&](MeshBuilder& part) {
+        constexpr float kOut = 0.8F;
+        constexpr float kFall = 1.5F;
+        constexpr float kTop = 2.15F;
+        constexpr float kVerge = kFront + 0.14F;
+        part.material(m.slate).tint(0.95F);
+        part.quad({kOut, kFall, kVerge}, {kOut, kFall, kBack}, {0, kTop, kBack}, {0, kTop, kVerge});
+        part.material(m.stone).tint(0.95F);
+        part.quad(
+            {kOut, kFall - 0.1F, kVerge},
+            {kOut, kFall, kVerge},
+            {0, kTop, kVerge},
+            {0, kTop - 0.12F, kVerge}
+        );
+        part.tint(0.75F);
+        part.quad(
+            {0, kTop - 0.12F, kVerge},
+            {0, kTop - 0.12F, kBack},
+            {kOut, kFall - 0.1F, kBack},
+            {kOut, kFall - 0.1F, kVerge}
+        );
+        part.triangle({0, kTop, kBack}, {kOut, kFall, kBack}, {0, kFall, kBack});
+    };
+    half(mesh);
+    mesh.mirrored(half);
 }
 
-// A water tank on legs.
-void add_tank(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.asphalt).tint(0.8F);
-    for (const float x : {-0.75F, 0.75F}) {
-        for (const float z : {-0.75F, 0.75F}) {
-            mesh.open_box({{x - 0.08F, kRoofTop, z - 0.08F}, {x + 0.08F, 1.3F, z + 0.08F}}, "EWSN");
+// A tiled pavilion over the whole cell, with a lantern on top.
+void add_cupola(MeshBuilder& mesh, const CityMaterials& m) {
+    constexpr float kEave = 1.85F;
+    constexpr float kRoofFoot = 0.5F;
+    constexpr float kNeck = 0.45F;
+    constexpr float kShoulder = 2.1F;
+    mesh.material(m.stone).tint(0.97F);
+    mesh.open_box({{-1.7F, kRoofTop, -1.7F}, {1.7F, kRoofFoot, 1.7F}}, "EWSN");
+    mesh.box({{-kEave, kRoofFoot - 0.1F, -kEave}, {kEave, kRoofFoot, kEave}});
+    for (int side = 0; side < 4; ++side) {
+        mesh.turned(side, [&](MeshBuilder& part) {
+            constexpr int kCourses = 3;
+            part.material(m.tile);
+            for (int course = 0; course < kCourses; ++course) {
+                const auto at = [](int row) {
+                    const float t = static_cast<float>(row) / kCourses;
+                    return Point2{
+                        kEave + (kNeck - kEave) * t, kRoofFoot + (kShoulder - kRoofFoot) * t};
+                };
+                const Point2 low = at(course);
+                const Point2 high = at(course + 1);
+                part.tint(course % 2 == 0 ? 1.0F : 0.9F);
+                part.quad(
+                    {-low.u, low.v, low.u},
+                    {low.u, low.v, low.u},
+                    {high.u, high.v, high.u},
+                    {-high.u, high.v, high.u}
+                );
+            }
+            part.material(m.glass).tint(1);
+            part.open_box({{-0.3F, kShoulder, 0.3F}, {0.3F, 2.5F, 0.36F}}, "S");
+            part.material(m.stone).tint(1);
+            part.open_box({{0.28F, kShoulder, 0.28F}, {0.42F, 2.5F, 0.42F}}, "EWSN");
+            part.material(m.tile).tint(0.97F);
+            part.triangle({-0.6F, 2.5F, 0.6F}, {0.6F, 2.5F, 0.6F}, {0, 3.3F, 0});
+            part.tint(0.75F);
+            part.triangle({0.6F, 2.5F, 0.6F}, {-0.6F, 2.5F, 0.6F}, {0, 2.5F, 0});
+        });
+    }
+    mesh.material(m.iron).tint(1);
+    mesh.cone(0, 0, 0.08F, 3.2F, 3.9F, 5);
+}
+
+// Lawn, a pergola and a seat up in the sun.
+void add_roof_garden(MeshBuilder& mesh, const CityMaterials& m) {
+    mesh.material(m.brick).tint(1, 0.85F, 0.7F);
+    mesh.open_box({{-1.5F, kRoofTop, -1.5F}, {1.5F, 0.3F, 1.5F}}, "EWSNU");
+    mesh.material(m.leaf).tint(1);
+    mesh.open_box({{-1.4F, 0.3F, -1.4F}, {0.1F, 0.36F, 1.4F}}, "EWSNU");
+    mesh.tint(0.8F);
+    mesh.ball({-0.7F, 0.75F, -0.6F}, {0.6F, 0.55F, 0.6F}, 7);
+    mesh.ball({-0.8F, 0.55F, 0.7F}, {0.4F, 0.4F, 0.4F}, 6);
+    mesh.material(m.plaster).tint(1);
+    for (const float x : {0.35F, 1.3F}) {
+        for (const float z : {-1.2F, 1.2F}) {
+            mesh.open_box({{x - 0.06F, 0.3F, z - 0.06F}, {x + 0.06F, 2.2F, z + 0.06F}}, "EWSN");
         }
+        mesh.box({{x - 0.06F, 2.2F, -1.45F}, {x + 0.06F, 2.32F, 1.45F}});
     }
-    mesh.box({{-1.05F, 1.2F, -1.05F}, {1.05F, 1.35F, 1.05F}});
-    mesh.material(m.brick).tint(0.75F);
-    mesh.cylinder(0, 0, 1.0F, 1.35F, 3.1F, 12);
-    mesh.material(m.asphalt).tint(0.7F);
-    for (const float y : {1.7F, 2.6F}) {
-        const std::array<Point2, 2> hoop = {{{1.03F, y}, {1.03F, y + 0.1F}}};
-        mesh.lathe(0, 0, hoop, 12);
+    for (const float z : {-1.2F, -0.6F, 0.0F, 0.6F, 1.2F}) {
+        mesh.box({{0.1F, 2.32F, z - 0.05F}, {1.55F, 2.4F, z + 0.05F}});
     }
-    mesh.material(m.slate).tint(1);
-    mesh.cone(0, 0, 1.2F, 3.1F, 3.9F, 12);
+    mesh.material(m.accent).tint(1);
+    mesh.open_box({{0.5F, 0.3F, -0.5F}, {1.1F, 0.65F, 0.5F}}, "EWSNU");
 }
 
-void add_mast(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.stone).tint(0.75F);
-    mesh.bevelled_box({{-1.1F, kRoofTop, -0.9F}, {1.1F, 1.9F, 0.9F}}, 0.06F);
+// A hatch and two vents.
+void add_hatch(MeshBuilder& mesh, const CityMaterials& m) {
+    mesh.material(m.stone).tint(0.95F);
+    mesh.bevelled_box({{-1.1F, kRoofTop, -0.9F}, {0.1F, 0.45F, 0.5F}}, 0.05F);
     mesh.material(m.slate).tint(0.9F);
-    mesh.bevelled_box({{-1.25F, 1.9F, -1.05F}, {1.25F, 2.05F, 1.05F}}, 0.05F);
-    mesh.material(m.accent).tint(0.5F);
-    mesh.open_box({{-0.4F, kRoofTop, 0.9F}, {0.4F, 1.6F, 0.94F}}, "SEWU");
-    mesh.material(m.asphalt).tint(0.9F);
-    const std::array<Point2, 4> pole = {{{0.09F, 2.05F}, {0.07F, 3.6F}, {0.03F, 5.6F}, {0, 5.7F}}};
-    mesh.lathe(0.5F, 0, pole, 6);
-    for (const float y : {3.4F, 4.2F, 4.9F}) {
-        mesh.box({{0.5F - 0.55F, y, -0.03F}, {0.5F + 0.55F, y + 0.06F, 0.03F}});
-    }
-    mesh.material(m.glow).tint(1);
-    mesh.ball({0.5F, 5.72F, 0}, {0.1F, 0.1F, 0.1F}, 6);
+    mesh.bevelled_box({{-1.0F, 0.45F, -0.8F}, {0.0F, 0.55F, 0.4F}}, 0.04F);
+    mesh.material(m.iron).tint(1);
+    mesh.cylinder(1.0F, -0.7F, 0.16F, kRoofTop, 0.7F, 7);
+    mesh.cone(1.0F, -0.7F, 0.28F, 0.7F, 0.9F, 7);
+    mesh.cylinder(1.2F, 0.8F, 0.12F, kRoofTop, 0.5F, 7);
+    mesh.cone(1.2F, 0.8F, 0.22F, 0.5F, 0.68F, 7);
 }
 
+// A winter garden: a glass roof as wide as the cell.
 void add_roof_light(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.slate).tint(0.9F);
-    mesh.open_box({{-1.3F, kRoofTop, -0.9F}, {1.3F, 0.5F, 0.9F}}, "EWSN");
-    mesh.material(m.glow).tint(1);
-    mesh.quad({-1.3F, 0.5F, 0.9F}, {1.3F, 0.5F, 0.9F}, {1.3F, 1.0F, 0}, {-1.3F, 1.0F, 0});
-    mesh.quad({1.3F, 0.5F, -0.9F}, {-1.3F, 0.5F, -0.9F}, {-1.3F, 1.0F, 0}, {1.3F, 1.0F, 0});
-    mesh.triangle({1.3F, 0.5F, 0.9F}, {1.3F, 0.5F, -0.9F}, {1.3F, 1.0F, 0});
-    mesh.triangle({-1.3F, 0.5F, -0.9F}, {-1.3F, 0.5F, 0.9F}, {-1.3F, 1.0F, 0});
-    mesh.material(m.asphalt).tint(0.8F);
-    for (const float x : {-1.3F, -0.43F, 0.43F, 1.3F}) {
-        mesh.open_box({{x - 0.04F, 0.95F, -0.06F}, {x + 0.04F, 1.05F, 0.06F}}, "EWSNU");
-        mesh.quad(
-            {x - 0.04F, 0.52F, 0.92F},
-            {x + 0.04F, 0.52F, 0.92F},
-            {x + 0.04F, 1.03F, 0.02F},
-            {x - 0.04F, 1.03F, 0.02F}
-        );
-        mesh.quad(
-            {x + 0.04F, 0.52F, -0.92F},
-            {x - 0.04F, 0.52F, -0.92F},
-            {x - 0.04F, 1.03F, -0.02F},
-            {x + 0.04F, 1.03F, -0.02F}
-        );
+    constexpr float kFoot = 1.6F;
+    constexpr float kWall = 0.7F;
+    constexpr float kTop = 1.9F;
+    mesh.material(m.stone).tint(0.97F);
+    mesh.open_box({{-kFoot, kRoofTop, -kFoot}, {kFoot, 0.25F, kFoot}}, "EWSNU");
+    for (int side = 0; side < 4; ++side) {
+        mesh.turned(side, [&](MeshBuilder& part) {
+            part.material(m.glass).tint(1);
+            part.quad(
+                {-kFoot, 0.25F, kFoot},
+                {kFoot, 0.25F, kFoot},
+                {kFoot, kWall, kFoot},
+                {-kFoot, kWall, kFoot}
+            );
+            part.triangle({-kFoot, kWall, kFoot}, {kFoot, kWall, kFoot}, {0, kTop, 0});
+            part.material(m.plaster).tint(1);
+            part.open_box(
+                {{-kFoot, kWall - 0.05F, kFoot}, {kFoot, kWall + 0.05F, kFoot + 0.05F}}, "SUD"
+            );
+            for (const float x : {-kFoot, -0.55F, 0.55F, kFoot - 0.08F}) {
+                part.open_box({{x, 0.25F, kFoot}, {x + 0.08F, kWall, kFoot + 0.05F}}, "SEW");
+            }
+            // Along the hip.
+            constexpr float kBar = 0.06F;
+            part.quad(
+                {kFoot - kBar, kWall + 0.03F, kFoot + 0.03F},
+                {kFoot + kBar, kWall + 0.03F, kFoot - kBar},
+                {kBar, kTop + 0.03F, -kBar},
+                {-kBar, kTop + 0.03F, kBar}
+            );
+        });
     }
 }
 
-// Chimney stacks and an air duct behind a parapet, built for the south side.
+// A chimney stack on the deck behind a roof window.
 void add_stack(MeshBuilder& mesh, const CityMaterials& m) {
-    mesh.material(m.brick).tint(0.85F);
-    mesh.bevelled_box({{-1.3F, kRoofTop, -1.2F}, {-0.3F, 2.1F, -0.5F}}, 0.04F);
-    mesh.material(m.stone).tint(0.8F);
-    mesh.bevelled_box({{-1.38F, 2.1F, -1.28F}, {-0.22F, 2.25F, -0.42F}}, 0.04F);
-    mesh.material(m.asphalt).tint(0.9F);
-    mesh.cylinder(-1.05F, -0.85F, 0.14F, 2.25F, 2.6F, 8);
-    mesh.cylinder(-0.55F, -0.85F, 0.14F, 2.25F, 2.75F, 8);
-    mesh.material(m.paving).tint(0.75F);
-    mesh.bevelled_box({{0.35F, kRoofTop, -0.9F}, {1.35F, 0.85F, 0.2F}}, 0.05F);
-    mesh.material(m.asphalt).tint(0.6F);
-    mesh.cylinder(0.85F, -0.35F, 0.35F, 0.85F, 0.95F, 8);
+    mesh.material(m.brick).tint(1);
+    mesh.bevelled_box({{-1.55F, kDeck, -0.9F}, {-0.75F, 3.5F, -0.3F}}, 0.04F);
+    mesh.material(m.stone).tint(0.95F);
+    mesh.bevelled_box({{-1.63F, 3.5F, -0.98F}, {-0.67F, 3.65F, -0.22F}}, 0.04F);
+    mesh.material(m.tile).tint(1);
+    mesh.cylinder(-1.35F, -0.6F, 0.13F, 3.65F, 4.0F, 8);
+    mesh.cylinder(-0.95F, -0.6F, 0.13F, 3.65F, 4.1F, 8);
 }
 
 MeshBuilder shaded(MeshBuilder mesh) {
-    mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.5F ? 0.65F : 1.0F; });
+    mesh.shade([](const Vec3&, const Vec3& normal) { return normal.y < -0.5F ? 0.8F : 1.0F; });
     return mesh;
 }
 
@@ -129,50 +235,47 @@ MeshBuilder shaded(MeshBuilder mesh) {
 
 MeshBuilder make_flat_roof(const CityMaterials& materials, RoofPart part) {
     MeshBuilder mesh;
-    add_roof_floor(mesh, materials);
-    switch (part) {
-        case RoofPart::kNone:
-            break;
-        case RoofPart::kTank:
-            add_tank(mesh, materials);
-            break;
-        case RoofPart::kMast:
-            add_mast(mesh, materials);
-            break;
-        case RoofPart::kLight:
-            add_roof_light(mesh, materials);
-            break;
-    }
+    add_deck(mesh, materials, kCityHalf, -kCityHalf, -kCityHalf, kCityHalf);
+    mesh.placed({0, kDeck, 0}, 0, 1, [&](MeshBuilder& thing) {
+        switch (part) {
+            case RoofPart::kHatch:
+                add_hatch(thing, materials);
+                break;
+            case RoofPart::kCupola:
+                add_cupola(thing, materials);
+                break;
+            case RoofPart::kGarden:
+                add_roof_garden(thing, materials);
+                break;
+            case RoofPart::kLight:
+                add_roof_light(thing, materials);
+                break;
+        }
+    });
     return shaded(std::move(mesh));
 }
 
-MeshBuilder make_parapet(const CityMaterials& materials, bool has_stack) {
-    MeshBuilder mesh = make_side([&](MeshBuilder& part, RightEnd end) {
-        add_parapet(part, materials, end);
-        if (has_stack) {
+MeshBuilder make_mansard(const CityMaterials& materials, MaterialId cover, bool has_dormer) {
+    MeshBuilder mesh;
+    mesh.turned(1, [&](MeshBuilder& part) {
+        add_slope(part, materials, cover, {});
+        add_deck(part, materials, kCityHalf, -kCityHalf, -kCityHalf, kEdge);
+        if (has_dormer) {
+            add_roof_window(part, materials);
             add_stack(part, materials);
         }
     });
-    add_roof_floor(mesh, materials);
     return shaded(std::move(mesh));
 }
 
-MeshBuilder make_parapet_corner(const CityMaterials& materials, bool has_tank) {
-    const auto parapet = [&](MeshBuilder& mesh, RightEnd end) {
-        add_parapet(mesh, materials, end);
-    };
-    MeshBuilder mesh = make_corner(parapet, parapet);
+MeshBuilder make_mansard_corner(const CityMaterials& materials, MaterialId cover) {
+    MeshBuilder mesh;
+    mesh.turned(1, [&](MeshBuilder& part) { add_slope(part, materials, cover, {false, true}); });
+    mesh.turned(2, [&](MeshBuilder& part) { add_slope(part, materials, cover, {true, false}); });
+    add_deck(mesh, materials, kEdge, -kEdge, -kCityHalf, kCityHalf);
     // A finial marks the corner.
-    mesh.material(materials.stone).tint(0.95F);
-    mesh.bevelled_box({{1.55F, 0.95F, -2.0F}, {2.0F, 1.3F, -1.55F}}, 0.05F);
-    mesh.material(materials.slate).tint(1);
-    mesh.hip_roof({{1.55F, 1.3F, -2.0F}, {2.0F, 1.8F, -1.55F}}, 0.06F);
-    add_roof_floor(mesh, materials);
-    if (has_tank) {
-        mesh.placed({-0.35F, 0, 0.35F}, 0, 1, [&](MeshBuilder& part) {
-            add_tank(part, materials);
-        });
-    }
+    mesh.material(materials.iron).tint(1);
+    mesh.cone(kEdge, -kEdge, 0.16F, kDeck, kDeck + 1.3F, 6);
     return shaded(std::move(mesh));
 }
 
