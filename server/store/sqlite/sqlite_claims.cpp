@@ -200,6 +200,12 @@ Stored<void> SqliteStore::release(const Lease& lease, double solved_seconds) {
             .bind(solved_seconds)
             .bind(std::string_view(lease.job_id))
             .run();
+        Statement row = database.prepare("SELECT cancel_requested FROM job WHERE id = ?");
+        row.bind(std::string_view(lease.job_id));
+        if (row.step() && row.integer(0) != 0) {
+            // Nobody shall run it again.
+            end_cancelled(database, lease.job_id, proto::now_millis());
+        }
         return {};
     });
 }
