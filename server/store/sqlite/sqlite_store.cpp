@@ -117,10 +117,15 @@ void SqliteStore::recover(Database& database) {
 }
 
 void SqliteStore::after_commit(Database& database) {
-    for (const std::string& digest : std::exchange(unlinked_digests_, {})) {
-        if (!is_digest_used(database, digest)) {
-            artifacts_->remove_if_unpinned(digest);
+    try {
+        while (!unlinked_digests_.empty()) {
+            if (!is_digest_used(database, unlinked_digests_.back())) {
+                artifacts_->remove_if_unpinned(unlinked_digests_.back());
+            }
+            unlinked_digests_.pop_back();
         }
+    } catch (const SqliteError&) {
+        // The rest is looked at after the next commit.
     }
     tell_listeners(std::exchange(touched_, {}));
 }
