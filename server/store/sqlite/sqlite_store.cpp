@@ -51,6 +51,9 @@ Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(
         // The destructor gives the lock back from here on.
         auto store = std::unique_ptr<SqliteStore>(new SqliteStore(directory, lock, retention_ms));
         return store;
+    } catch (const NewerSchema& newer) {
+        ::close(lock);
+        return failure(StoreErrorCode::kConflict, newer.what());
     } catch (const std::exception& problem) {
         ::close(lock);
         return failure(StoreErrorCode::kUnavailable, problem.what());
