@@ -32,7 +32,7 @@ TemporaryDirectory::~TemporaryDirectory() {
 
 std::vector<StoreSetting> embedded_settings() {
     const auto make = [] { return std::make_unique<EmbeddedStore>(); };
-    return {{"Fresh", make}, {"Reopened", make, true}, {"Loaded", make, false, 200}};
+    return {{"Fresh", make}, {"Reopened", make, true}, {"Loaded", make, false, 120}};
 }
 
 namespace {

@@ -32,6 +32,7 @@ int close_file(sqlite3_file* file) {
     const int code = own.real->pMethods->xClose(own.real);
     delete own.path;
     own.path = nullptr;
+    own.disk->closed();
     return code;
 }
 
@@ -173,6 +174,7 @@ struct FaultyVfs::Registration {
         if (code == SQLITE_OK) {
             opened.path = new std::string(name == nullptr ? "" : name);
             opened.base.pMethods = &kMethods;
+            own.disk->opened();
         }
         return code;
     }
@@ -225,6 +227,21 @@ void FaultyVfs::heal() {
 bool FaultyVfs::has_failed() const {
     const std::lock_guard lock(mutex_);
     return failed_;
+}
+
+int FaultyVfs::open_file_count() const {
+    const std::lock_guard lock(mutex_);
+    return open_file_count_;
+}
+
+void FaultyVfs::opened() {
+    const std::lock_guard lock(mutex_);
+    ++open_file_count_;
+}
+
+void FaultyVfs::closed() {
+    const std::lock_guard lock(mutex_);
+    --open_file_count_;
 }
 
 void FaultyVfs::watch() {

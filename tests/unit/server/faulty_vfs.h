@@ -30,6 +30,8 @@ class FaultyVfs {
     // Whether a call has failed since fail().
     [[nodiscard]] bool has_failed() const;
 
+    [[nodiscard]] int open_file_count() const;
+
     // From now on it is kept what each file was when it was last synced; what is in the files now
     // counts as that.
     void watch();
@@ -50,6 +52,8 @@ class FaultyVfs {
     void change(const std::string& path, Change change);  // before it is made
     void synced(const std::string& path);
     void removed(const std::string& path);
+    void opened();
+    void closed();
 
   private:
     struct Watched {
@@ -65,6 +69,7 @@ class FaultyVfs {
     std::size_t failures_left_ = 0;
     int code_ = 0;
     bool failed_ = false;
+    int open_file_count_ = 0;
     bool is_watching_ = false;
     bool is_powerless_ = false;
     std::size_t calls_to_power_cut_ = 0;

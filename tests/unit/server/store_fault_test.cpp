@@ -49,7 +49,7 @@ Told run_script(SqliteStore& store) {
     told.claimed = (*claimed)->lease;
     for (std::uint32_t block = 0; block < 3; ++block) {
         Progress progress = progress_of(block + 1);
-        progress.checkpoint = JobCheckpoint{0, block + 1, block + 1, random_bytes(9000, block)};
+        progress.checkpoint = JobCheckpoint{0, block + 1, block + 1, random_bytes(5000, block)};
         const auto first = append(store, *told.claimed, {block_event(block)}, progress);
         if (told.went_well(first)) {
             told.head = *first;
@@ -93,7 +93,7 @@ void expect_kept(SqliteStore& store, const Told& told) {
         ASSERT_TRUE(checkpoint);
         EXPECT_GE(checkpoint->seq, told.head);
         EXPECT_LE(checkpoint->seq, job.head);
-        EXPECT_EQ(checkpoint->labels, random_bytes(9000, checkpoint->blocks_done - 1));
+        EXPECT_EQ(checkpoint->labels, random_bytes(5000, checkpoint->blocks_done - 1));
     }
 }
 
@@ -164,6 +164,7 @@ TEST_P(StoreFaults, OpeningFailsWithAnErrorAndWorksOnceTheFaultHasGone) {
         disk.heal();
         if (!opened) {
             EXPECT_EQ(error_of(opened), StoreErrorCode::kUnavailable);
+            EXPECT_EQ(disk.open_file_count(), 0);
             const auto again = value(SqliteStore::open(directory.path(), kRetentionMs));
             expect_usable(*again);
         } else {
@@ -191,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(
 );
 
 TEST(StorePowerLoss, WhatWasAnsweredIsThereWheneverThePowerGoes) {
-    for (const std::uint64_t seed : {0U, 1U, 2U}) {
+    for (const std::uint64_t seed : {0U, 1U}) {
         bool has_failed = true;
         for (std::size_t n = 1; has_failed; ++n) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << " call " << n);
@@ -212,6 +213,27 @@ TEST(StorePowerLoss, WhatWasAnsweredIsThereWheneverThePowerGoes) {
             expect_usable(*store);
             ASSERT_FALSE(HasFailure());
         }
+    }
+}
+
+TEST(StoreDiskFaults, ALogThatCannotBeMovedAtTheEndLosesNothing) {
+    for (const auto call :
+         {FaultyVfs::Call::kWrite, FaultyVfs::Call::kSync, FaultyVfs::Call::kTruncate}) {
+        const TemporaryDirectory directory;
+        FaultyVfs disk;
+        Told told;
+        {
+            const auto store = value(SqliteStore::open(directory.path(), kRetentionMs));
+            told = run_script(*store);
+            EXPECT_TRUE(told.is_finished);
+            disk.fail(call, 1, SQLITE_IOERR, kForLong);
+        }
+        EXPECT_TRUE(disk.has_failed());
+        EXPECT_EQ(disk.open_file_count(), 0);
+        disk.heal();
+        const auto store = value(SqliteStore::open(directory.path(), kRetentionMs));
+        expect_kept(*store, told);
+        expect_usable(*store);
     }
 }
 
