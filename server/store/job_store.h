@@ -50,7 +50,8 @@ class JobStore {
     // answers the same. Fails: kLeaseLost, kConflict when a digest is not stored.
     [[nodiscard]] virtual Stored<proto::Job> finish(const Lease& lease, const Outcome& outcome) = 0;
 
-    // Gives a running job back to the queue; costs no attempt.
+    // Gives a running job back to the queue; costs no attempt. One whose cancellation was asked for
+    // ends as cancelled instead. Fails: kLeaseLost.
     [[nodiscard]] virtual Stored<void> release(const Lease& lease, double solved_seconds) = 0;
 
     // Ends a queued job, marks a running one so that its holder ends it, leaves an ended one.

@@ -114,15 +114,20 @@ std::string Statement::blob(int column) const {
     return bytes == nullptr ? std::string() : std::string(bytes, static_cast<std::size_t>(size));
 }
 
-Database::Database(const std::string& path, Mode mode) {
-    const int flags = (mode == Mode::kWriter ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE
-                                             : SQLITE_OPEN_READONLY) |
-                      SQLITE_OPEN_NOMUTEX;
-    if (sqlite3_open_v2(path.c_str(), &connection_, flags, nullptr) != SQLITE_OK) {
+Database::Database(const std::string& path, int flags) {
+    if (sqlite3_open_v2(path.c_str(), &connection_, flags | SQLITE_OPEN_NOMUTEX, nullptr) !=
+        SQLITE_OK) {
         const std::string why = connection_ == nullptr ? "no memory" : sqlite3_errmsg(connection_);
         sqlite3_close(connection_);
         throw SqliteError("the database " + path + " cannot be opened: " + why);
     }
+}
+
+Database::Database(const std::string& path, Mode mode)
+    : Database(
+          path,
+          mode == Mode::kWriter ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY
+      ) {
     execute("PRAGMA busy_timeout=5000");
     execute("PRAGMA temp_store=MEMORY");
     if (mode == Mode::kReader) {

@@ -82,6 +82,9 @@ class Database {
     void checkpoint(bool truncate);
 
   private:
+    // Opens, no more; what throws from then on finds a destructor that closes.
+    Database(const std::string& path, int flags);
+
     sqlite3* connection_ = nullptr;
     std::unordered_map<std::string, sqlite3_stmt*> statements_;
     int wal_pages_ = 0;

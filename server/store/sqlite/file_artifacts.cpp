@@ -65,6 +65,12 @@ bool sync_directory(const fs::path& path) {
     return directory.get() >= 0 && ::fsync(directory.get()) == 0;
 }
 
+// A digest as sha256_hex() writes them; nothing else is the name of a file.
+bool is_digest(std::string_view text) {
+    return text.size() == 64 &&
+           text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
 class FileReader final : public ArtifactStore::Reader {
   public:
     FileReader(Descriptor file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
@@ -190,7 +196,7 @@ Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_vi
 }
 
 Stored<std::unique_ptr<ArtifactStore::Reader>> FileArtifacts::open(const std::string& digest) {
-    Descriptor file(::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC));
+    Descriptor file(is_digest(digest) ? ::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC) : -1);
     if (file.get() < 0) {
         return tl::unexpected(StoreError{
             StoreErrorCode::kNotFound, "there is no artifact " + digest});
@@ -222,7 +228,7 @@ Stored<std::string> FileArtifacts::load(const std::string& digest) {
 
 bool FileArtifacts::exists(const std::string& digest) const {
     std::error_code error;
-    return fs::exists(path_of(digest), error);
+    return is_digest(digest) && fs::exists(path_of(digest), error);
 }
 
 void FileArtifacts::remove_if_unpinned(const std::string& digest) {

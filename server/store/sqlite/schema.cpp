@@ -102,7 +102,7 @@ void prepare_schema(Database& database) {
     constexpr auto kNewest = static_cast<std::int64_t>(kSteps.size());
     const std::int64_t version = read_version(database);
     if (version < 0 || version > kNewest) {
-        throw SqliteError(
+        throw NewerSchema(
             "the database was made by a newer version of the program: its tables have form " +
             std::to_string(version) + ", known are forms up to " + std::to_string(kNewest)
         );

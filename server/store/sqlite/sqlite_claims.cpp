@@ -3,8 +3,10 @@
 #include "server/store/sqlite/job_rows.h"
 #include "server/store/sqlite/sqlite_store.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace modelsynth::server {
 
@@ -148,21 +150,21 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
         const JobState state = cancel_requested ? JobState::kCancelled : outcome.state;
         const bool succeeded = state == JobState::kSucceeded;
         const bool failed = state == JobState::kFailed;
+        std::vector<ArtifactLink> kept = outcome.artifacts;
         if (!succeeded) {
             // What is left of an unfinished job is its preview.
-            std::vector<ArtifactLink> kept;
-            for (const ArtifactLink& artifact : outcome.artifacts) {
-                if (!artifact.name.ends_with(".glb")) {
-                    kept.push_back(artifact);
-                }
-            }
-            if (auto linked = link_artifacts(database, id, kept); !linked) {
-                return tl::unexpected(std::move(linked.error()));
-            }
-        } else if (auto linked = link_artifacts(database, id, outcome.artifacts); !linked) {
+            std::erase_if(kept, [](const ArtifactLink& artifact) {
+                return artifact.name.ends_with(".glb");
+            });
+        }
+        if (auto linked = link_artifacts(database, id, kept); !linked) {
             return tl::unexpected(std::move(linked.error()));
         }
-        if (!outcome.artifacts.empty()) {
+        const bool has_labels =
+            std::any_of(kept.begin(), kept.end(), [](const ArtifactLink& artifact) {
+                return artifact.name == "labels";
+            });
+        if (succeeded || has_labels) {
             // They tell more than it does.
             database.prepare("DELETE FROM checkpoint WHERE job_id = ?")
                 .bind(std::string_view(id))
@@ -198,6 +200,12 @@ Stored<void> SqliteStore::release(const Lease& lease, double solved_seconds) {
             .bind(solved_seconds)
             .bind(std::string_view(lease.job_id))
             .run();
+        Statement row = database.prepare("SELECT cancel_requested FROM job WHERE id = ?");
+        row.bind(std::string_view(lease.job_id));
+        if (row.step() && row.integer(0) != 0) {
+            // Nobody shall run it again.
+            end_cancelled(database, lease.job_id, proto::now_millis());
+        }
         return {};
     });
 }

@@ -51,6 +51,9 @@ Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(
         // The destructor gives the lock back from here on.
         auto store = std::unique_ptr<SqliteStore>(new SqliteStore(directory, lock, retention_ms));
         return store;
+    } catch (const NewerSchema& newer) {
+        ::close(lock);
+        return failure(StoreErrorCode::kConflict, newer.what());
     } catch (const std::exception& problem) {
         ::close(lock);
         return failure(StoreErrorCode::kUnavailable, problem.what());
@@ -117,10 +120,15 @@ void SqliteStore::recover(Database& database) {
 }
 
 void SqliteStore::after_commit(Database& database) {
-    for (const std::string& digest : std::exchange(unlinked_digests_, {})) {
-        if (!is_digest_used(database, digest)) {
-            artifacts_->remove_if_unpinned(digest);
+    try {
+        while (!unlinked_digests_.empty()) {
+            if (!is_digest_used(database, unlinked_digests_.back())) {
+                artifacts_->remove_if_unpinned(unlinked_digests_.back());
+            }
+            unlinked_digests_.pop_back();
         }
+    } catch (const SqliteError&) {
+        // The rest is looked at after the next commit.
     }
     tell_listeners(std::exchange(touched_, {}));
 }

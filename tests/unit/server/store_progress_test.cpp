@@ -1,0 +1,245 @@
+// What a job's holder writes while it runs.
+
+#include "tests/unit/server/store_suite.h"
+
+#include <future>
+#include <mutex>
+
+namespace modelsynth::server {
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ProgressContract);
+
+namespace {
+
+Progress with_checkpoint(std::uint32_t blocks_done, std::string labels) {
+    Progress progress = progress_of(blocks_done);
+    // The seq that the caller gives is not looked at.
+    progress.checkpoint = JobCheckpoint{999, blocks_done, blocks_done / 2, std::move(labels)};
+    return progress;
+}
+
+void expect_checkpoint(
+    const std::optional<JobCheckpoint>& checkpoint, const JobCheckpoint& expected
+) {
+    ASSERT_TRUE(checkpoint);
+    EXPECT_EQ(checkpoint->seq, expected.seq);
+    EXPECT_EQ(checkpoint->blocks_done, expected.blocks_done);
+    EXPECT_EQ(checkpoint->blocks_accepted, expected.blocks_accepted);
+    EXPECT_EQ(checkpoint->labels, expected.labels);
+}
+
+}  // namespace
+
+TEST_P(ProgressContract, AppendNumbersOnFromTheNewestEvent) {
+    const Claim claimed = submit_and_claim("a");
+    EXPECT_EQ(value(append(jobs(), claimed.lease, {block_event(0)})), 2U);
+    EXPECT_EQ(
+        value(append(jobs(), claimed.lease, {block_event(1), block_event(2)}, progress_of(3))), 3U
+    );
+    EXPECT_EQ(value(append(jobs(), claimed.lease, {block_event(3)}, progress_of(4))), 5U);
+    between_steps();
+    const std::vector<Event> events_of_a = log("a");
+    ASSERT_EQ(events_of_a.size(), 5U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(events_of_a[i + 1].fields, block_event(i).fields);
+    }
+    EXPECT_EQ(find("a").blocks_done, 4U);
+    EXPECT_EQ(find("a").blocks_total, 100U);
+}
+
+TEST_P(ProgressContract, AppendTellsInTheOrderOfTheCalls) {
+    constexpr std::size_t kAppends = 300;
+    const Claim claimed = submit_and_claim("a");
+    std::mutex mutex;
+    std::vector<std::uint64_t> firsts;
+    std::promise<void> all_told;
+    for (std::size_t i = 0; i < kAppends; ++i) {
+        // Every third one has two events.
+        std::vector<NewEvent> appended(i % 3 == 0 ? 2 : 1, block_event(i));
+        jobs().append(
+            claimed.lease,
+            std::move(appended),
+            progress_of(static_cast<std::uint32_t>(i)),
+            [&](const Stored<std::uint64_t>& first) {
+                const std::lock_guard lock(mutex);
+                firsts.push_back(first.value_or(0));
+                if (firsts.size() == kAppends) {
+                    all_told.set_value();
+                }
+            }
+        );
+    }
+    all_told.get_future().wait();
+    std::uint64_t expected = 2;
+    for (std::size_t i = 0; i < kAppends; ++i) {
+        ASSERT_EQ(firsts[i], expected);
+        expected += i % 3 == 0 ? 2 : 1;
+    }
+    between_steps();
+    EXPECT_EQ(log("a").size(), expected - 1);
+}
+
+TEST_P(ProgressContract, WhatWasToldIsThereToRead) {
+    const Claim claimed = submit_and_claim("a");
+    for (std::uint64_t i = 0; i < 5; ++i) {
+        const std::uint64_t first = value(append(jobs(), claimed.lease, {block_event(i)}));
+        const EventPage page = value(events().read("a", first - 1, 10));
+        ASSERT_EQ(page.events.size(), 1U);
+        EXPECT_EQ(page.events.front().seq, first);
+        EXPECT_EQ(page.head, first);
+        EXPECT_FALSE(page.ended);
+    }
+}
+
+TEST_P(ProgressContract, AnAppendThatFailsLeavesItsNeighboursAlone) {
+    const Claim claimed = submit_and_claim("a");
+    std::mutex mutex;
+    std::vector<std::optional<StoreErrorCode>> told;
+    std::promise<void> all_told;
+    constexpr std::size_t kAppends = 40;
+    for (std::size_t i = 0; i < kAppends; ++i) {
+        const Lease lease = {i % 2 == 0 ? "a" : "none", claimed.lease.token};
+        jobs().append(
+            lease,
+            {block_event(i)},
+            with_checkpoint(static_cast<std::uint32_t>(i), std::to_string(i)),
+            [&](const Stored<std::uint64_t>& first) {
+                const std::lock_guard lock(mutex);
+                told.push_back(error_of(first));
+                if (told.size() == kAppends) {
+                    all_told.set_value();
+                }
+            }
+        );
+    }
+    all_told.get_future().wait();
+    for (std::size_t i = 0; i < kAppends; ++i) {
+        EXPECT_EQ(told[i].has_value(), i % 2 == 1);
+    }
+    EXPECT_EQ(log("a").size(), 1 + kAppends / 2);
+    EXPECT_EQ(value(jobs().checkpoint("a"))->labels, "38");
+    EXPECT_FALSE(value(jobs().checkpoint("none")));
+}
+
+TEST_P(ProgressContract, TheCheckpointStandsForTheLastEventOfItsAppend) {
+    const Claim claimed = submit_and_claim("a");
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+    value(append(jobs(), claimed.lease, {block_event(0), block_event(1)}, with_checkpoint(2, "two"))
+    );
+    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, 1, "two"});
+    // One without keeps it.
+    value(append(jobs(), claimed.lease, {block_event(2)}, progress_of(3)));
+    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, 1, "two"});
+    value(append(jobs(), claimed.lease, {block_event(3)}, with_checkpoint(4, "four")));
+    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, 2, "four"});
+    // With no event it stands for what is there.
+    value(append(jobs(), claimed.lease, {}, with_checkpoint(4, "")));
+    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, 2, ""});
+}
+
+TEST_P(ProgressContract, AClaimGivesTheLatestCheckpointBack) {
+    const std::string labels = random_bytes(50'000, 3);
+    const Claim first = submit_and_claim("a");
+    value(append(jobs(), first.lease, {block_event(0)}, with_checkpoint(1, "older")));
+    value(append(jobs(), first.lease, {block_event(1)}, with_checkpoint(2, labels)));
+    value(jobs().release(first.lease, 1));
+    between_steps();
+    const auto released = claim();
+    ASSERT_TRUE(released);
+    expect_checkpoint(released->checkpoint, {3, 2, 1, labels});
+    value(append(jobs(), released->lease, {block_event(2)}, progress_of(3)));
+    reopen();
+    const auto crashed = claim();
+    ASSERT_TRUE(crashed);
+    expect_checkpoint(crashed->checkpoint, {3, 2, 1, labels});
+    EXPECT_EQ(crashed->blocks_logged, 3U);
+}
+
+TEST_P(ProgressContract, AnOldHolderWritesNoCheckpoint) {
+    const Claim old = submit_and_claim("a");
+    value(append(jobs(), old.lease, {block_event(0)}, with_checkpoint(1, "good")));
+    value(jobs().release(old.lease, 1));
+    ASSERT_TRUE(claim());
+    EXPECT_EQ(
+        error_of(append(jobs(), old.lease, {block_event(1)}, with_checkpoint(2, "late"))),
+        StoreErrorCode::kLeaseLost
+    );
+    expect_checkpoint(value(jobs().checkpoint("a")), {2, 1, 0, "good"});
+}
+
+TEST_P(ProgressContract, TheCheckpointGoesWhenTheJobSucceeds) {
+    auto pin = value(artifacts().put("labels"));
+    const Claim claimed = submit_and_claim("a");
+    value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    value(jobs().finish(claimed.lease, succeeded({{"labels", pin->digest()}})));
+    pin.reset();
+    between_steps();
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+}
+
+TEST_P(ProgressContract, TheCheckpointGoesWhenTheJobSucceedsWithoutArtifacts) {
+    const Claim claimed = submit_and_claim("a");
+    value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    value(jobs().finish(claimed.lease, succeeded()));
+    between_steps();
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+}
+
+TEST_P(ProgressContract, TheCheckpointStaysWithAFailedJobUntilItExpires) {
+    const Claim claimed = submit_and_claim("a");
+    value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    const proto::Job ended = value(jobs().finish(claimed.lease, failed()));
+    between_steps();
+    EXPECT_TRUE(value(jobs().checkpoint("a")));
+    jobs().expire(*ended.expires);
+    EXPECT_TRUE(value(jobs().checkpoint("a")));
+    jobs().expire(*ended.expires + 1);
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+    EXPECT_EQ(find("a").state, proto::JobState::kFailed);
+}
+
+TEST_P(ProgressContract, TheCheckpointStaysWithACancelledJob) {
+    const Claim running = submit_and_claim("a");
+    value(append(jobs(), running.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    value(jobs().cancel("a", kNow));
+    // A model is no preview: it is not kept, and tells nothing.
+    auto pin = value(artifacts().put("glb"));
+    value(jobs().finish(running.lease, succeeded({{"nodes.glb", pin->digest()}})));
+    EXPECT_EQ(error_of(jobs().artifact("a", "nodes.glb")), StoreErrorCode::kNotFound);
+    EXPECT_TRUE(value(jobs().checkpoint("a")));
+
+    const Claim released = submit_and_claim("b");
+    value(append(jobs(), released.lease, {block_event(0)}, with_checkpoint(1, "y")));
+    value(jobs().release(released.lease, 0));
+    value(jobs().cancel("b", kNow));
+    pin.reset();
+    between_steps();
+    EXPECT_EQ(value(jobs().checkpoint("b"))->labels, "y");
+}
+
+TEST_P(ProgressContract, TheCheckpointGoesWhenLabelsTellThePreview) {
+    auto pin = value(artifacts().put("labels"));
+    const Claim claimed = submit_and_claim("a");
+    value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    value(jobs().cancel("a", kNow));
+    Outcome outcome = failed();
+    outcome.state = proto::JobState::kCancelled;
+    outcome.artifacts = {{"labels", pin->digest()}};
+    value(jobs().finish(claimed.lease, outcome));
+    pin.reset();
+    between_steps();
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+    EXPECT_EQ(value(jobs().artifact("a", "labels")), sha256_hex("labels"));
+}
+
+TEST_P(ProgressContract, TheCheckpointGoesWithAnErasedJob) {
+    const Claim claimed = submit_and_claim("a");
+    value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
+    value(jobs().erase("a"));
+    submit(new_job("a"));
+    between_steps();
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+    EXPECT_FALSE(claim()->checkpoint);
+}
+
+}  // namespace modelsynth::server
