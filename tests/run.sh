@@ -63,7 +63,7 @@ step format
 # shellcheck disable=SC2046
 must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 
-programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests)
+programs=(solver_tests wire_tests cli_tests store_tests property_tests fuzz_tests)
 build release all && {
   unit release "${programs[@]}"
   service release tests/layout tests/service
@@ -76,8 +76,8 @@ if ! $quick; then
     service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
       tests/service/test_examples_api.py tests/service/test_crash.py
   }
-  build tsan solver_tests modelsynthd && {
-    unit tsan solver_tests
+  build tsan solver_tests store_tests modelsynthd && {
+    unit tsan solver_tests store_tests
     service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py
   }
