@@ -69,7 +69,8 @@ class JobStore {
 
     // How far the model of a job that has not ended well has come; nothing when no claim of it
     // kept any, or when the job's "labels" tell it.
-    [[nodiscard]] virtual Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id) = 0;
+    [[nodiscard]] virtual Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id
+    ) = 0;
 
     // Adds an artifact to a finished job; one of that name stays.
     [[nodiscard]] virtual Stored<void> link(const std::string& id, const ArtifactLink& link) = 0;

@@ -77,7 +77,7 @@ struct Claim {
     std::string solver_version;       // under which blocks_logged were made; empty: never started
     std::uint32_t blocks_logged = 0;  // block events that are in the log already
     std::optional<JobCheckpoint> checkpoint;
-    std::uint64_t head = 0;           // newest seq
+    std::uint64_t head = 0;              // newest seq
     std::uint32_t fruitless_claims = 0;  // claims in a row that logged nothing new
 };
 
