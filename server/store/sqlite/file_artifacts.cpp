@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -156,7 +157,17 @@ Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::put(std::string_view 
             return tl::unexpected(std::move(written.error()));
         }
     }
+    // Also when the file was there: whoever put it may be about to do this, or have failed.
+    if (!sync_directories(pin->digest())) {
+        return unavailable("an artifact's directory cannot be synced");
+    }
     return pin;
+}
+
+bool FileArtifacts::sync_directories(const std::string& digest) const {
+    const fs::path inner = path_of(digest).parent_path();
+    return sync_directory(inner) && sync_directory(inner.parent_path()) &&
+           sync_directory(directory_);
 }
 
 Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_view bytes) {
@@ -181,16 +192,10 @@ Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_vi
     }
     const fs::path target = path_of(digest);
     std::error_code error;
-    const bool new_directory = fs::create_directories(target.parent_path(), error);
+    fs::create_directories(target.parent_path(), error);
     fs::rename(temporary, target, error);
     if (error) {
         return give_up("an artifact cannot be put in its place");
-    }
-    const bool synced = sync_directory(target.parent_path()) &&
-                        (!new_directory || (sync_directory(target.parent_path().parent_path()) &&
-                                            sync_directory(directory_)));
-    if (!synced) {
-        return unavailable("an artifact's directory cannot be synced");
     }
     return {};
 }
@@ -229,6 +234,13 @@ Stored<std::string> FileArtifacts::load(const std::string& digest) {
 bool FileArtifacts::exists(const std::string& digest) const {
     std::error_code error;
     return is_digest(digest) && fs::exists(path_of(digest), error);
+}
+
+bool FileArtifacts::empty() const {
+    const fs::recursive_directory_iterator entries(directory_);
+    return std::none_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
+        return entry.is_regular_file();
+    });
 }
 
 void FileArtifacts::remove_if_unpinned(const std::string& digest) {

@@ -22,6 +22,8 @@ class FileArtifacts final : public ArtifactStore {
     [[nodiscard]] Stored<std::string> load(const std::string& digest) override;
 
     [[nodiscard]] bool exists(const std::string& digest) const;
+    // Whether there is no file at all.
+    [[nodiscard]] bool empty() const;
 
     // Removes the file unless somebody holds a pin.
     void remove_if_unpinned(const std::string& digest);
@@ -38,6 +40,7 @@ class FileArtifacts final : public ArtifactStore {
     class FilePin;
 
     [[nodiscard]] std::filesystem::path path_of(const std::string& digest) const;
+    [[nodiscard]] bool sync_directories(const std::string& digest) const;
     Stored<void> write_file(const std::string& digest, std::string_view bytes);
     void unpin(const std::string& digest);
 

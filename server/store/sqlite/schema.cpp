@@ -92,6 +92,8 @@ std::int64_t read_version(Database& database) {
 
 }  // namespace
 
+bool is_new(Database& database) { return read_version(database) == 0; }
+
 void prepare_schema(Database& database) {
     {
         Statement check = database.prepare("PRAGMA quick_check(1)");

@@ -67,6 +67,13 @@ SqliteStore::SqliteStore(const std::filesystem::path& directory, int lock, UnixM
       artifacts_(std::make_unique<FileArtifacts>(directory / "artifacts", directory / "tmp")) {
     {
         Database database(path_, Database::Mode::kWriter);
+        if (!artifacts_->empty() && is_new(database)) {
+            // An empty database would make orphans of all of them, and the sweep take them away.
+            throw SqliteError(
+                "the database is empty or gone, but there are artifacts; bring it back, or move "
+                "them away to begin anew"
+            );
+        }
         prepare_schema(database);
         recover(database);
         artifacts_->sweep([&database](const std::string& digest) {

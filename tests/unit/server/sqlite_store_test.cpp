@@ -153,6 +153,30 @@ TEST_F(SqliteStoreFiles, ADamagedDatabaseIsRefused) {
     EXPECT_FALSE(opened.error().message.empty());
 }
 
+TEST_F(SqliteStoreFiles, AnEmptyDatabaseDoesNotTakeTheArtifactsAway) {
+    keep(*value(open()), "content");
+    const auto files = [this] {
+        std::size_t count = 0;
+        for (const auto& entry :
+             fs::recursive_directory_iterator(directory_.path() / "artifacts")) {
+            count += entry.is_regular_file() ? 1U : 0U;
+        }
+        return count;
+    };
+    ASSERT_EQ(files(), 1U);
+    fs::rename(directory_.path() / "modelsynth.db", directory_.path() / "lost.db");
+    for (int i = 0; i < 2; ++i) {
+        const auto opened = open();
+        ASSERT_FALSE(opened);
+        EXPECT_EQ(opened.error().code, StoreErrorCode::kUnavailable);
+        EXPECT_NE(opened.error().message.find("there are artifacts"), std::string::npos);
+        EXPECT_EQ(files(), 1U);
+    }
+    fs::rename(directory_.path() / "lost.db", directory_.path() / "modelsynth.db");
+    const auto store = value(open());
+    EXPECT_EQ(value(store->artifacts().load(value(store->artifact("a", "x")))), "content");
+}
+
 TEST_F(SqliteStoreFiles, TheSameBytesAreOneFile) {
     const auto store = value(open());
     std::vector<std::unique_ptr<ArtifactStore::Pin>> pins(16);
