@@ -78,7 +78,7 @@ struct Claim {
     std::uint32_t blocks_logged = 0;  // block events that are in the log already
     std::optional<JobCheckpoint> checkpoint;
     std::uint64_t head = 0;              // newest seq
-    std::uint32_t fruitless_claims = 0;  // claims in a row that logged nothing new
+    std::uint32_t fruitless_claims = 0;  // crashes since a block was last logged
 };
 
 struct NewEvent {
