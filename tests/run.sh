@@ -17,14 +17,13 @@ esac
 results=$root/build/test-results
 rm -rf "$results"
 mkdir -p "$results"
-broken=0
+touch "$results/broken"
 
 step() { printf '\n=== %s (%s s)\n' "$1" "$SECONDS"; }
 
 # Counts as a failure of its own when a step cannot even be run.
-must() {
-  "$@" || { echo "failed: $*"; broken=$((broken + 1)); return 1; }
-}
+broken() { echo "failed: $*" | tee -a "$results/broken"; return 1; }
+must() { "$@" || broken "$@"; }
 
 build() {  # PRESET TARGET...
   local preset=$1
@@ -42,7 +41,7 @@ unit() {  # PRESET PROGRAM...
     step "$preset $program"
     "build/$preset/bin/$program" --gtest_brief=1 \
       --gtest_output="xml:$results/$preset.$program.xml" || echo "$program: exit code $?"
-    [ -s "$results/$preset.$program.xml" ] || broken=$((broken + 1))
+    [ -s "$results/$preset.$program.xml" ] || broken "$preset $program"
   done
 }
 
@@ -52,7 +51,20 @@ service() {  # PRESET PYTEST-ARGUMENTS...
   step "$preset service tests"
   MODELSYNTH_BIN_DIR=$root/build/$preset/bin /usr/bin/python3 -m pytest -q -p no:cacheprovider \
     --junitxml="$results/$preset.service.xml" "$@"
-  [ -s "$results/$preset.service.xml" ] || broken=$((broken + 1))
+  [ -s "$results/$preset.service.xml" ] || broken "$preset service tests"
+}
+
+# The service tests wait more than they work, so the next build runs meanwhile; what they print
+# comes when they have ended.
+beside() {  # COMMAND...
+  "$@" >"$results/beside.log" 2>&1 &
+  beside_pid=$!
+}
+join() {
+  [ -n "${beside_pid:-}" ] || return 0
+  wait "$beside_pid"
+  cat "$results/beside.log"
+  beside_pid=
 }
 
 step install
@@ -66,22 +78,28 @@ must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests golden_tests store_tests)
 build release all && {
   unit release "${programs[@]}"
-  service release tests/layout tests/service
+  beside service release tests/layout tests/service
 }
 if ! $quick; then
-  export MODELSYNTH_SANITIZED=1
-  build asan "${programs[@]}" modelsynthd modelsynth && {
-    export MODELSYNTH_CASES=150
+  build asan "${programs[@]}" modelsynthd modelsynth
+  built=$?
+  join
+  export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=150
+  [ $built -eq 0 ] && {
     unit asan "${programs[@]}"
-    service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
+    beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
       tests/service/test_examples_api.py tests/service/test_crash.py
   }
-  build tsan solver_tests store_tests modelsynthd && {
+  build tsan solver_tests store_tests modelsynthd
+  built=$?
+  join
+  [ $built -eq 0 ] && {
     unit tsan solver_tests store_tests
     service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py
   }
 fi
 
+join
 step summary
-/usr/bin/python3 tests/summary.py "$broken" "$results"/*.xml
+/usr/bin/python3 tests/summary.py "$(wc -l <"$results/broken")" "$results"/*.xml
