@@ -46,7 +46,7 @@ EarlierProgress read_earlier_progress(
         earlier.checkpoint_seq = earlier.checkpoint ? claim.checkpoint->seq : 0;
     }
     constexpr std::size_t kPage = 1000;
-    std::uint64_t after = earlier.checkpoint_seq;
+    std::uint64_t after = std::max(earlier.checkpoint_seq, claim.version_base);
     while (after < claim.head) {
         const auto page = events.read(claim.lease.job_id, after, kPage);
         if (!page || page->events.empty()) {

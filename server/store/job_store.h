@@ -34,9 +34,10 @@ class JobStore {
     [[nodiscard]] virtual Stored<std::optional<Claim>> claim(proto::UnixMillis now) = 0;
 
     // Appends events of a running job, numbered in the commit that writes them, and its checkpoint
-    // in the same one. Returns at once;
-    // `done` is called in order of the calls, on the store's thread, with the first seq once they
-    // are on disk. Blocks while too much waits to be written.
+    // in the same one. Under another solver version than the append before, the older checkpoint
+    // goes: it is of another model. Returns at once; `done` is called in order of the calls, on the
+    // store's thread, with the first seq once they are on disk. Blocks while too much waits to be
+    // written.
     // Fails: kLeaseLost.
     virtual void append(
         const Lease& lease,

@@ -73,12 +73,12 @@ struct Claim {
     Lease lease;
     proto::Job job;
     std::optional<double> deadline_seconds;
-    double solved_seconds = 0;        // of earlier claims that did not end; counts to the deadline
-    std::string solver_version;       // under which blocks_logged were made; empty: never started
-    std::uint32_t blocks_logged = 0;  // block events that are in the log already
-    std::optional<JobCheckpoint> checkpoint;
-    std::uint64_t head = 0;              // newest seq
-    std::uint32_t fruitless_claims = 0;  // crashes since a block was last logged
+    double solved_seconds = 0;       // of earlier claims that did not end; counts to the deadline
+    std::string solver_version;      // under which the job was last appended to; empty: never
+    std::uint64_t version_base = 0;  // events up to this one tell of another model
+    std::optional<JobCheckpoint> checkpoint;  // made under it
+    std::uint64_t head = 0;                   // newest seq
+    std::uint32_t fruitless_claims = 0;       // crashes since a block was last logged
 };
 
 struct NewEvent {

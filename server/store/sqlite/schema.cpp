@@ -11,7 +11,7 @@ namespace {
 
 // The form of the tables is numbered; step i makes form i + 1 of form i, step 0 out of nothing. A
 // step that was released is not changed any more.
-constexpr std::array<const char*, 2> kSteps = {
+constexpr std::array<const char*, 3> kSteps = {
     R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value INTEGER NOT NULL) STRICT, WITHOUT ROWID;
 CREATE TABLE job (
@@ -75,6 +75,9 @@ CREATE TABLE checkpoint (
     blocks_accepted INTEGER NOT NULL,
     labels BLOB NOT NULL
 ) STRICT;
+)sql",
+    R"sql(
+ALTER TABLE job ADD COLUMN version_base INTEGER NOT NULL DEFAULT 0;
 )sql"};
 
 // 0: the file is new.

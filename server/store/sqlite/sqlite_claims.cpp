@@ -28,50 +28,67 @@ void keep_checkpoint(
         .run();
 }
 
+void drop_checkpoint(Database& database, const std::string& id) {
+    database.prepare("DELETE FROM checkpoint WHERE job_id = ?").bind(std::string_view(id)).run();
+}
+
+// What is known of the job's model was made by another solver and is of no use to this one.
+void begin_version(
+    Database& database, const std::string& id, const std::string& version, std::uint64_t base
+) {
+    drop_checkpoint(database, id);
+    database.prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
+        .bind(std::string_view(version))
+        .bind(base)
+        .bind(std::string_view(id))
+        .run();
+}
+
 }  // namespace
 
 Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now) {
-    return writer_->call<std::optional<Claim>>(
-        [&](Database& database) -> Stored<std::optional<Claim>> {
-            Claim claim;
-            {
-                Statement next = database.prepare(
-                    std::string("SELECT id, token, deadline, solved_seconds, solver_version, "
-                                "fruitless_claims, next_seq FROM job WHERE state = 0 ORDER BY ") +
-                    kEffectivePriority + " DESC, ordinal LIMIT 1"
-                );
-                next.bind(now);
-                if (!next.step()) {
-                    return std::optional<Claim>();
-                }
-                claim.lease = {next.text(0), next.natural(1) + 1};
-                if (!next.is_null(2)) {
-                    claim.deadline_seconds = next.real(2);
-                }
-                claim.solved_seconds = next.real(3);
-                claim.solver_version = next.text(4);
-                claim.fruitless_claims = static_cast<std::uint32_t>(next.natural(5));
-                claim.head = next.natural(6) - 1;
+    return writer_->call<
+        std::optional<Claim>>([&](Database& database) -> Stored<std::optional<Claim>> {
+        Claim claim;
+        {
+            Statement next = database.prepare(
+                std::string(
+                    "SELECT id, token, deadline, solved_seconds, solver_version, "
+                    "version_base, fruitless_claims, next_seq FROM job WHERE state = 0 ORDER BY "
+                ) +
+                kEffectivePriority + " DESC, ordinal LIMIT 1"
+            );
+            next.bind(now);
+            if (!next.step()) {
+                return std::optional<Claim>();
             }
-            database
-                .prepare(
-                    "UPDATE job SET state = 1, token = ?, started = COALESCE(started, ?) "
-                    "WHERE id = ?"
-                )
-                .bind(claim.lease.token)
-                .bind(now)
-                .bind(std::string_view(claim.lease.job_id))
-                .run();
-            auto job = find_job(database, claim.lease.job_id);
-            if (!job) {
-                return tl::unexpected(std::move(job.error()));
+            claim.lease = {next.text(0), next.natural(1) + 1};
+            if (!next.is_null(2)) {
+                claim.deadline_seconds = next.real(2);
             }
-            claim.job = std::move(*job);
-            claim.blocks_logged = claim.job.blocks_done;
-            claim.checkpoint = find_checkpoint(database, claim.lease.job_id);
-            return std::optional<Claim>(std::move(claim));
+            claim.solved_seconds = next.real(3);
+            claim.solver_version = next.text(4);
+            claim.version_base = next.natural(5);
+            claim.fruitless_claims = static_cast<std::uint32_t>(next.natural(6));
+            claim.head = next.natural(7) - 1;
         }
-    );
+        database
+            .prepare(
+                "UPDATE job SET state = 1, token = ?, started = COALESCE(started, ?) "
+                "WHERE id = ?"
+            )
+            .bind(claim.lease.token)
+            .bind(now)
+            .bind(std::string_view(claim.lease.job_id))
+            .run();
+        auto job = find_job(database, claim.lease.job_id);
+        if (!job) {
+            return tl::unexpected(std::move(job.error()));
+        }
+        claim.job = std::move(*job);
+        claim.checkpoint = find_checkpoint(database, claim.lease.job_id);
+        return std::optional<Claim>(std::move(claim));
+    });
 }
 
 void SqliteStore::append(
@@ -87,10 +104,16 @@ void SqliteStore::append(
              if (!holds(database, lease)) {
                  return lease_lost(lease);
              }
+             bool is_new_version = false;
              {
-                 Statement row = database.prepare("SELECT next_seq FROM job WHERE id = ?");
+                 Statement row =
+                     database.prepare("SELECT next_seq, solver_version FROM job WHERE id = ?");
                  row.bind(std::string_view(lease.job_id)).step();
                  *first_seq = row.natural(0);
+                 is_new_version = row.text(1) != progress.solver_version;
+             }
+             if (is_new_version) {
+                 begin_version(database, lease.job_id, progress.solver_version, *first_seq - 1);
              }
              if (progress.checkpoint) {
                  keep_checkpoint(
@@ -104,13 +127,12 @@ void SqliteStore::append(
              }
              database
                  .prepare(
-                     "UPDATE job SET blocks_done = ?, blocks_total = ?, solver_version = ?, "
-                     "solved_seconds = ?, fruitless_claims = CASE WHEN ? THEN 0 ELSE "
+                     "UPDATE job SET blocks_done = ?, blocks_total = ?, solved_seconds = ?, "
+                     "fruitless_claims = CASE WHEN ? THEN 0 ELSE "
                      "fruitless_claims END WHERE id = ?"
                  )
                  .bind(std::uint64_t{progress.blocks_done})
                  .bind(std::uint64_t{progress.blocks_total})
-                 .bind(std::string_view(progress.solver_version))
                  .bind(progress.solved_seconds)
                  .bind(std::int64_t{has_block})
                  .bind(std::string_view(lease.job_id))
@@ -166,9 +188,7 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
             });
         if (succeeded || has_labels) {
             // They tell more than it does.
-            database.prepare("DELETE FROM checkpoint WHERE job_id = ?")
-                .bind(std::string_view(id))
-                .run();
+            drop_checkpoint(database, id);
         }
         const std::string type(proto::state_name(state));
         const std::string fields = succeeded ? proto::succeeded_fields(outcome.result)

@@ -30,31 +30,4 @@ TemporaryDirectory::~TemporaryDirectory() {
     std::filesystem::remove_all(path_, ignored);
 }
 
-std::vector<StoreSetting> embedded_settings() {
-    const auto make = [] { return std::make_unique<EmbeddedStore>(); };
-    return {{"Fresh", make}, {"Reopened", make, true}, {"Loaded", make, false, 120}};
-}
-
-namespace {
-
-std::string name_of(const testing::TestParamInfo<StoreSetting>& setting) {
-    return setting.param.name;
-}
-
-// Other backends run the same tests by lines like these.
-INSTANTIATE_TEST_SUITE_P(Embedded, JobContract, testing::ValuesIn(embedded_settings()), name_of);
-INSTANTIATE_TEST_SUITE_P(Embedded, ClaimContract, testing::ValuesIn(embedded_settings()), name_of);
-INSTANTIATE_TEST_SUITE_P(
-    Embedded, ProgressContract, testing::ValuesIn(embedded_settings()), name_of
-);
-INSTANTIATE_TEST_SUITE_P(Embedded, EventContract, testing::ValuesIn(embedded_settings()), name_of);
-INSTANTIATE_TEST_SUITE_P(
-    Embedded, ArtifactContract, testing::ValuesIn(embedded_settings()), name_of
-);
-INSTANTIATE_TEST_SUITE_P(
-    Embedded, ExampleContract, testing::ValuesIn(embedded_settings()), name_of
-);
-
-}  // namespace
-
 }  // namespace modelsynth::server

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace modelsynth::server {
 
@@ -50,8 +49,5 @@ class EmbeddedStore final : public StoreUnderTest {
     TemporaryDirectory directory_;
     std::unique_ptr<SqliteStore> store_;
 };
-
-// Fresh, reopened, loaded.
-[[nodiscard]] std::vector<StoreSetting> embedded_settings();
 
 }  // namespace modelsynth::server

@@ -86,16 +86,16 @@ TEST_F(SqliteStoreFiles, ADirectoryThatCannotBeMadeIsAnError) {
 
 TEST_F(SqliteStoreFiles, TablesOfANewerFormAreRefused) {
     value(value(open())->submit(new_job("a"), kNoLimit));
-    execute("UPDATE meta SET value = 3 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 4 WHERE key = 'schema'");
     for (int i = 0; i < 2; ++i) {
         const auto opened = open();
         ASSERT_FALSE(opened);
         EXPECT_EQ(opened.error().code, StoreErrorCode::kConflict);
         EXPECT_NE(opened.error().message.find("newer version"), std::string::npos);
-        EXPECT_NE(opened.error().message.find("form 3"), std::string::npos);
+        EXPECT_NE(opened.error().message.find("form 4"), std::string::npos);
     }
     // Nothing was changed in it.
-    execute("UPDATE meta SET value = 2 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 3 WHERE key = 'schema'");
     EXPECT_TRUE(value(open())->find("a"));
 }
 
@@ -106,7 +106,10 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         value(store->submit(new_job("b"), kNoLimit));
         value(append(*store, value(store->claim(kNow))->lease, {block_event(0)}));
     }
-    execute("DROP TABLE checkpoint; UPDATE meta SET value = 1 WHERE key = 'schema'");
+    execute(
+        "ALTER TABLE job DROP COLUMN version_base; DROP TABLE checkpoint;"
+        "UPDATE meta SET value = 1 WHERE key = 'schema'"
+    );
     {
         const auto store = value(open());
         EXPECT_EQ(value(store->find("a")).state, proto::JobState::kSucceeded);
@@ -114,7 +117,8 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         EXPECT_EQ(whole_log(*store, "b").size(), 2U);
         const auto claimed = value(store->claim(kNow));
         ASSERT_TRUE(claimed);
-        EXPECT_EQ(claimed->blocks_logged, 1U);
+        EXPECT_EQ(claimed->job.blocks_done, 1U);
+        EXPECT_EQ(claimed->version_base, 0U);
         EXPECT_FALSE(claimed->checkpoint);
         Progress progress = progress_of(2);
         progress.checkpoint = JobCheckpoint{0, 2, 2, "labels"};

@@ -38,7 +38,7 @@ TEST_P(ClaimContract, AClaimTellsWhatWasSubmitted) {
     EXPECT_EQ(claimed->deadline_seconds, 12.5);
     EXPECT_EQ(claimed->solved_seconds, 0);
     EXPECT_EQ(claimed->solver_version, "");
-    EXPECT_EQ(claimed->blocks_logged, 0U);
+    EXPECT_EQ(claimed->version_base, 0U);
     EXPECT_EQ(claimed->head, 1U);
     EXPECT_EQ(claimed->fruitless_claims, 0U);
     EXPECT_FALSE(claimed->checkpoint);
@@ -258,8 +258,9 @@ TEST_P(ClaimContract, AClaimTellsWhatEarlierOnesDid) {
     reopen();
     const auto second = claim();
     ASSERT_TRUE(second);
-    EXPECT_EQ(second->blocks_logged, 2U);
+    EXPECT_EQ(second->job.blocks_done, 2U);
     EXPECT_EQ(second->solver_version, "v1");
+    EXPECT_EQ(second->version_base, 1U);
     EXPECT_EQ(second->solved_seconds, 1.5);
     EXPECT_EQ(second->head, 3U);
     EXPECT_EQ(second->job.head, 3U);

@@ -96,7 +96,7 @@ std::optional<Claim> StoreModel::claim(proto::UnixMillis now) {
     claim.deadline_seconds = best->submitted.deadline_seconds;
     claim.solved_seconds = best->solved_seconds;
     claim.solver_version = best->solver_version;
-    claim.blocks_logged = best->job.blocks_done;
+    claim.version_base = best->version_base;
     claim.checkpoint = best->checkpoint;
     claim.head = best->job.head;
     claim.fruitless_claims = best->fruitless_claims;
@@ -111,6 +111,10 @@ Stored<std::uint64_t> StoreModel::append(
         return failure(StoreErrorCode::kLeaseLost);
     }
     const std::uint64_t first = row->job.head + 1;
+    if (row->solver_version != progress.solver_version) {
+        row->checkpoint.reset();
+        row->version_base = first - 1;
+    }
     for (const NewEvent& event : events) {
         append_event(*row, event);
         if (event.type == "block") {

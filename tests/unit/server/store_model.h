@@ -23,6 +23,7 @@ class StoreModel {
         std::uint32_t fruitless_claims = 0;
         double solved_seconds = 0;
         std::string solver_version;
+        std::uint64_t version_base = 0;
         std::optional<JobCheckpoint> checkpoint;
         std::map<std::string, std::string> artifacts;
         std::vector<Event> events;

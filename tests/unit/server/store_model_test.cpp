@@ -57,7 +57,7 @@ std::string text_of(const std::optional<Claim>& claim) {
     if (claim) {
         text << claim->lease.token << ' ' << text_of(claim->job) << ' '
              << claim->deadline_seconds.value_or(-1) << ' ' << claim->solved_seconds << ' '
-             << claim->solver_version << ' ' << claim->blocks_logged << ' ' << claim->head << ' '
+             << claim->solver_version << ' ' << claim->version_base << ' ' << claim->head << ' '
              << claim->fruitless_claims << ' ' << text_of(claim->checkpoint);
     }
     return text.str();

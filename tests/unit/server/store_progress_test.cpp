@@ -152,7 +152,39 @@ TEST_P(ProgressContract, AClaimGivesTheLatestCheckpointBack) {
     const auto crashed = claim();
     ASSERT_TRUE(crashed);
     expect_checkpoint(crashed->checkpoint, {3, 2, 1, labels});
-    EXPECT_EQ(crashed->blocks_logged, 3U);
+    EXPECT_EQ(crashed->job.blocks_done, 3U);
+}
+
+TEST_P(ProgressContract, AnotherSolverVersionDropsTheCheckpointAndTellsWhereItBegan) {
+    const Claim first = submit_and_claim("a");
+    value(append(jobs(), first.lease, {block_event(0)}, with_checkpoint(1, "older")));
+    value(jobs().release(first.lease, 1));
+    between_steps();
+    const auto second = claim();
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->version_base, 1U);
+    Progress progress = progress_of(0);
+    progress.solver_version = "v2";
+    value(append(jobs(), second->lease, {{"started", "{}", kNow}}, progress));
+    EXPECT_FALSE(value(jobs().checkpoint("a")));
+    // The crash comes before any block under it.
+    reopen();
+    const auto third = claim();
+    ASSERT_TRUE(third);
+    EXPECT_EQ(third->solver_version, "v2");
+    EXPECT_EQ(third->version_base, 2U);
+    EXPECT_FALSE(third->checkpoint);
+    // One of the same append is of the new version.
+    progress = with_checkpoint(1, "newer");
+    progress.solver_version = "v3";
+    value(append(jobs(), third->lease, {block_event(0)}, progress));
+    expect_checkpoint(value(jobs().checkpoint("a")), {4, 1, 0, "newer"});
+    // The same version changes nothing.
+    progress = progress_of(2);
+    progress.solver_version = "v3";
+    value(append(jobs(), third->lease, {block_event(1)}, progress));
+    value(jobs().release(third->lease, 1));
+    EXPECT_EQ(claim()->version_base, 3U);
 }
 
 TEST_P(ProgressContract, AnOldHolderWritesNoCheckpoint) {
