@@ -3,7 +3,9 @@
 #include "solver/core/label_set.h"
 #include "solver/core/relations.h"
 #include "solver/core/result.h"
+#include "solver/core/step_kernel.h"
 #include "solver/core/topology.h"
+#include "solver/core/vector_level.h"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +16,6 @@
 #include <vector>
 
 namespace modelsynth {
-
-enum class Propagation : std::uint8_t { kConsistent, kContradiction, kStopped };
 
 // The catalog C of the thesis (3.3.2): for every site the labels still possible there.
 //
@@ -38,12 +38,12 @@ class Catalog {
         : topology_(topology),
           relations_(relations),
           words_(kWords == 0 ? relations.words() : kWords),
-          sets_(topology.site_count() * words_),
+          padding_(reach_of(topology) * words_),
+          sets_(topology.site_count() * words_ + 2 * padding_),
           queue_(topology.site_count()),
           queued_(topology.site_count()),
           saved_(topology.site_count()),
-          support_(relations.count() * words_),
-          supported_(words_) {
+          support_(relations.stride()) {
         check(words_ == relations.words(), "a catalog of another width than its relations");
         check(
             T::kRelationCount == 0 || T::kRelationCount == relations.count(),
@@ -55,11 +55,11 @@ class Catalog {
 
     [[nodiscard]] std::size_t words() const { return kWords == 0 ? words_ : kWords; }
 
-    [[nodiscard]] Labels labels(Site site) const {
-        return Labels(sets_.data() + site * words(), words());
-    }
+    [[nodiscard]] Labels labels(Site site) const { return Labels(set(site), words()); }
 
-    [[nodiscard]] std::span<const Word> all_labels() const { return sets_; }
+    [[nodiscard]] std::span<const Word> all_labels() const {
+        return {set(0), site_count() * words()};
+    }
 
     [[nodiscard]] bool contains(Site site, Label label) const {
         return (labels(site)[label / kWordBits] >> (label % kWordBits) & 1) != 0;
@@ -68,17 +68,15 @@ class Catalog {
     // Puts back a state taken from all_labels() of a catalog of the same shape, or any sets.
     // Nothing is queued: the state is taken to be what propagation left.
     void restore(std::span<const Word> sets) {
-        std::copy(sets.begin(), sets.end(), sets_.begin());
+        std::copy(sets.begin(), sets.end(), set(0));
         forget_queue();
         forget_trail();
     }
 
     // The catalog without knowledge: the same set at every site.
-    void fill(std::span<const Word> set) {
+    void fill(std::span<const Word> same) {
         for (std::size_t site = 0; site < site_count(); ++site) {
-            std::copy(
-                set.begin(), set.end(), sets_.begin() + static_cast<std::ptrdiff_t>(site * words())
-            );
+            std::copy(same.begin(), same.end(), set(static_cast<Site>(site)));
         }
         forget_queue();
         forget_trail();
@@ -86,10 +84,10 @@ class Catalog {
 
     // Keeps only the labels of `allowed` at the site; false when none is left.
     [[nodiscard]] bool narrow(Site site, const Word* allowed) {
-        Word* set = sets_.data() + site * words();
+        Word* const own = set(site);
         Word removed = 0;
         for (std::size_t word = 0; word < words(); ++word) {
-            removed |= set[word] & ~allowed[word];
+            removed |= own[word] & ~allowed[word];
         }
         if (removed == 0) {
             return true;
@@ -97,8 +95,8 @@ class Catalog {
         save(site);
         Word left = 0;
         for (std::size_t word = 0; word < words(); ++word) {
-            set[word] &= allowed[word];
-            left |= set[word];
+            own[word] &= allowed[word];
+            left |= own[word];
         }
         enqueue(site);
         if (left == 0) {
@@ -112,17 +110,16 @@ class Catalog {
     void assign(Site site, Label label) {
         check(contains(site, label), "a label that is not in the catalog was assigned");
         save(site);
-        Word* set = sets_.data() + site * words();
-        std::fill(set, set + words(), Word{0});
-        set[label / kWordBits] = Word{1} << (label % kWordBits);
+        Word* const own = set(site);
+        std::fill(own, own + words(), Word{0});
+        own[label / kWordBits] = Word{1} << (label % kWordBits);
         enqueue(site);
     }
 
     // Takes one label away; false when none is left.
     [[nodiscard]] bool remove(Site site, Label label) {
         save(site);
-        Word* set = sets_.data() + site * words();
-        set[label / kWordBits] &= ~(Word{1} << (label % kWordBits));
+        set(site)[label / kWordBits] &= ~(Word{1} << (label % kWordBits));
         enqueue(site);
         if (is_empty(labels(site))) {
             emptied_ = site;
@@ -142,25 +139,17 @@ class Catalog {
     // kContradiction: some site lost its last label; emptied_site() tells which, and the catalog
     // is good only for undo() or restore(). kStopped: `stop` was requested; likewise.
     [[nodiscard]] Propagation propagate(const std::stop_token& stop) {
-        constexpr std::size_t kStopInterval = 1024;
-        std::size_t looked_at = 0;
-        while (queue_length_ > 0) {
-            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
-                forget_queue();
-                return Propagation::kStopped;
-            }
-            const Site site = dequeue();
-            collect_support(site);
-            bool consistent = true;
-            topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
-                consistent = consistent && narrow(neighbour, support_.data() + relation * words());
-            });
-            if (!consistent) {
-                forget_queue();
-                return Propagation::kContradiction;
-            }
+        Propagation result = Propagation::kConsistent;
+        if constexpr (kIsStepped) {
+            result =
+                topology_.has_steps_only() ? propagate_by_steps(stop) : propagate_by_arcs(stop);
+        } else {
+            result = propagate_by_arcs(stop);
         }
-        return Propagation::kConsistent;
+        if (result != Propagation::kConsistent) {
+            forget_queue();
+        }
+        return result;
     }
 
     // The site that lost its last label in the last contradiction.
@@ -178,8 +167,8 @@ class Catalog {
         while (trail_length_ > mark) {
             --trail_length_;
             const Site site = trail_sites_[trail_length_];
-            const Word* set = trail_words_.data() + trail_length_ * words();
-            std::copy(set, set + words(), sets_.data() + site * words());
+            const Word* old = trail_words_.data() + trail_length_ * words();
+            std::copy(old, old + words(), set(site));
             note_change(site);
         }
         forget_queue();
@@ -198,42 +187,92 @@ class Catalog {
     void clear_changed() { changed_.clear(); }
 
   private:
-    // The width of support_ when the compiler may know it: then the sums below stay in registers.
-    static constexpr std::size_t kSupportWords = T::kRelationCount * kWords;
+    static constexpr bool kIsStepped = kWords > 0 && SteppedTopology<T>;
     static constexpr std::size_t kTrailStart = 64;
 
-    // support_[r] = the labels that some label left at the site allows along relation r. Sites
-    // often come one after the other with the same set; then it is there already.
-    void collect_support(Site site) {
-        const Word* set = sets_.data() + site * words();
-        Word* known = supported_.data();
-        Word difference = 0;
-        for (std::size_t word = 0; word < words(); ++word) {
-            difference |= set[word] ^ known[word];
-            known[word] = set[word];
-        }
-        if (difference == 0) {
-            return;
-        }
-        if constexpr (kSupportWords > 0) {
-            std::array<Word, kSupportWords> sum = {};
-            for_each_nibble(labels(site), [&](std::size_t group, std::size_t members) {
-                const Word* rows = relations_.union_data(group, members, kSupportWords);
-                for (std::size_t word = 0; word < kSupportWords; ++word) {
-                    sum[word] |= rows[word];
-                }
-            });
-            std::copy(sum.begin(), sum.end(), support_.begin());
+    static std::size_t reach_of(const T& topology) {
+        if constexpr (kIsStepped) {
+            return topology.reach();
         } else {
-            std::fill(support_.begin(), support_.end(), Word{0});
-            Word* sum = support_.data();
-            const std::size_t width = support_.size();
-            for_each_nibble(labels(site), [&](std::size_t group, std::size_t members) {
-                const Word* rows = relations_.union_data(group, members, width);
-                for (std::size_t word = 0; word < width; ++word) {
-                    sum[word] |= rows[word];
-                }
+            return 0;
+        }
+    }
+
+    [[nodiscard]] Word* set(Site site) { return sets_.data() + padding_ + site * words(); }
+
+    [[nodiscard]] const Word* set(Site site) const {
+        return sets_.data() + padding_ + site * words();
+    }
+
+    Propagation propagate_by_steps(const std::stop_token& stop) requires kIsStepped {
+        reserve_trail(trail_length_ + site_count());
+        StepState<T::kRelationCount> state;
+        state.sets = set(0);
+        state.steps = topology_.steps();
+        state.arcs = topology_.arc_masks();
+        state.unions = relations_.union_data(0, 0);
+        state.queue = queue_.data();
+        state.queue_size = queue_.size();
+        state.queue_head = queue_head_;
+        state.queue_length = queue_length_;
+        state.queued = queued_.data();
+        state.is_saving = marks_ > 0;
+        state.stamp = stamp_;
+        state.saved = saved_.data();
+        state.trail_sites = trail_sites_.data();
+        state.trail_words = trail_words_.data();
+        state.trail_length = trail_length_;
+        state.changed = tracking_ ? &changed_ : nullptr;
+        state.emptied = emptied_;
+        const Propagation result =
+            StepKernel<T::kRelationCount, kWords>::run(state, stop, vector_level_);
+        queue_head_ = state.queue_head;
+        queue_length_ = state.queue_length;
+        trail_length_ = state.trail_length;
+        emptied_ = state.emptied;
+        return result;
+    }
+
+    Propagation propagate_by_arcs(const std::stop_token& stop) {
+        constexpr std::size_t kStopInterval = 1024;
+        std::size_t looked_at = 0;
+        while (queue_length_ > 0) {
+            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
+                return Propagation::kStopped;
+            }
+            const Site site = dequeue();
+            collect_support(site);
+            bool consistent = true;
+            topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
+                consistent = consistent && narrow(neighbour, support_.data() + relation * words());
             });
+            if (!consistent) {
+                return Propagation::kContradiction;
+            }
+        }
+        return Propagation::kConsistent;
+    }
+
+    // support_[r] = the labels that some label left at the site allows along relation r.
+    void collect_support(Site site) {
+        std::fill(support_.begin(), support_.end(), Word{0});
+        const auto add = [&](std::size_t group, std::size_t members) {
+            const Word* rows = relations_.union_data(group, members);
+            for (std::size_t word = 0; word < support_.size(); ++word) {
+                support_.data()[word] |= rows[word];
+            }
+        };
+        if (relations_.group_bits() == 8) {
+            for_each_group<8>(labels(site), add);
+        } else {
+            for_each_group<4>(labels(site), add);
+        }
+    }
+
+    void reserve_trail(std::size_t length) {
+        if (length > trail_sites_.size()) {
+            trail_sites_.resize(length);
+            trail_words_.resize(length * words());
         }
     }
 
@@ -244,12 +283,11 @@ class Catalog {
         }
         saved_.data()[site] = stamp_;
         if (trail_length_ == trail_sites_.size()) {
-            trail_sites_.resize(2 * trail_length_ + kTrailStart);
-            trail_words_.resize(trail_sites_.size() * words());
+            reserve_trail(2 * trail_length_ + kTrailStart);
         }
         trail_sites_.data()[trail_length_] = site;
-        const Word* set = sets_.data() + site * words();
-        std::copy(set, set + words(), trail_words_.data() + trail_length_ * words());
+        const Word* const own = set(site);
+        std::copy(own, own + words(), trail_words_.data() + trail_length_ * words());
         ++trail_length_;
     }
 
@@ -298,6 +336,7 @@ class Catalog {
     const T& topology_;
     const Relations& relations_;
     std::size_t words_;
+    std::size_t padding_;  // words before the first set and after the last; see StepState
     std::vector<Word> sets_;
     std::vector<Site> queue_;
     std::size_t queue_head_ = 0;
@@ -310,10 +349,10 @@ class Catalog {
     std::uint64_t stamp_ = 0;
     std::size_t marks_ = 0;
     std::vector<Word> support_;
-    std::vector<Word> supported_;  // the set that support_ belongs to; empty at first, as it is
     std::vector<Site> changed_;
     bool tracking_ = false;
     Site emptied_ = 0;
+    VectorLevel vector_level_ = vector_level();
 };
 
 }  // namespace modelsynth

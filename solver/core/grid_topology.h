@@ -31,6 +31,17 @@ class GridTopology {
 
     [[nodiscard]] const GridSize& size() const { return size_; }
 
+    // As SteppedTopology asks; arcs across a seam are no steps.
+    [[nodiscard]] bool has_steps_only() const { return wraps_.empty(); }
+
+    [[nodiscard]] const std::array<std::int64_t, kDirectionCount>& steps() const { return steps_; }
+
+    [[nodiscard]] const std::uint8_t* arc_masks() const { return arcs_.data(); }
+
+    [[nodiscard]] std::size_t reach() const {
+        return static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.z);
+    }
+
     friend bool operator==(const GridTopology& a, const GridTopology& b) {
         return a.size_ == b.size_ && a.wraps_ == b.wraps_;  // the rest follows from these
     }

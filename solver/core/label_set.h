@@ -38,16 +38,20 @@ constexpr void for_each_label(const Set& set, Visit visit) {
     }
 }
 
-// Calls visit(group, members) for every aligned group of four labels that has any in the set:
-// label 4 * group + i at bit i of members. In rising order.
-template <class Set, class Visit>
-constexpr void for_each_nibble(const Set& set, Visit visit) {
-    constexpr std::size_t kNibbles = kWordBits / 4;
+// Calls visit(group, members) for every aligned group of kBits labels that has any in the set:
+// label kBits * group + i at bit i of members. In rising order.
+template <std::size_t kBits, class Set, class Visit>
+constexpr void for_each_group(const Set& set, Visit visit) {
+    static_assert(kWordBits % kBits == 0 && kBits < kWordBits);
+    constexpr Word kMembers = (Word{1} << kBits) - 1;
     for (std::size_t word = 0; word < set.size(); ++word) {
         for (Word bits = set[word]; bits != 0;) {
-            const auto nibble = static_cast<std::size_t>(std::countr_zero(bits)) / 4;
-            visit(word * kNibbles + nibble, static_cast<std::size_t>(bits >> nibble * 4 & 15));
-            bits &= ~(Word{15} << nibble * 4);
+            const auto group = static_cast<std::size_t>(std::countr_zero(bits)) / kBits;
+            visit(
+                word * (kWordBits / kBits) + group,
+                static_cast<std::size_t>(bits >> group * kBits & kMembers)
+            );
+            bits &= ~(kMembers << group * kBits);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 #include "solver/core/result.h"
 
+#include <iterator>
 #include <utility>
 
 namespace modelsynth {
@@ -9,12 +10,13 @@ namespace modelsynth {
 Relations::Relations(std::size_t label_count, std::vector<RelationId> reverse)
     : label_count_(label_count),
       words_(words_for(label_count)),
+      group_bits_(group_bits_for(words_)),
       reverse_(std::move(reverse)),
-      unions_(
-          ((label_count + kGroupLabels - 1) / kGroupLabels << kGroupLabels) * reverse_.size() *
-          words_
-      ) {
+      stride_(stride_for(reverse_.size(), words_)) {
     check(label_count <= kLabelCountMax, "more labels than a label number can hold");
+    const std::size_t groups = words_ * kWordBits / group_bits_;
+    const std::size_t line_words = std::size(CacheLine().words);
+    unions_.resize(((groups << group_bits_) * stride_ + line_words - 1) / line_words);
     for (std::size_t relation = 0; relation < reverse_.size(); ++relation) {
         check(
             reverse_[relation] < reverse_.size() && reverse_[reverse_[relation]] == relation,
@@ -29,13 +31,13 @@ void Relations::allow(RelationId relation, Label a, Label b) {
         return;
     }
     const auto set = [this](RelationId r, Label from, Label to) {
-        const std::size_t group = from / kGroupLabels;
-        const std::size_t member = std::size_t{1} << (from % kGroupLabels);
-        for (std::size_t members = 0; members < (1U << kGroupLabels); ++members) {
-            if ((members & member) != 0) {
-                const std::size_t row = (group << kGroupLabels | members) * reverse_.size() + r;
-                unions_[row * words_ + to / kWordBits] |= Word{1} << (to % kWordBits);
-            }
+        Word* const rows = unions_.data()->words;
+        const std::size_t group = from / group_bits_;
+        const std::size_t member = std::size_t{1} << (from % group_bits_);
+        const std::size_t word = r * words_ + to / kWordBits;
+        for (std::size_t members = member; members < std::size_t{1} << group_bits_;
+             members = (members + 1) | member) {
+            rows[(group << group_bits_ | members) * stride_ + word] |= Word{1} << (to % kWordBits);
         }
     };
     set(relation, a, b);

@@ -18,15 +18,21 @@ using RelationId = std::uint16_t;
 // Eq. 3.2). Every relation has a reverse, the transposed matrix, for the same arc seen from its
 // other end; a relation may be its own reverse.
 //
-// Shape: one row of words() words per (label, relation); the rows of one label lie together, so
-//        that one pass over the labels of a site serves all its arcs. Labels stand in groups of
-//        four, and the union of the rows of every subset of a group is kept too: a set is then
-//        looked up by nibbles, at most a quarter of the steps.
-// Cost:  4 * labels * relations * words() words of memory.
+// Shape: a row holds words() words for each relation, and is filled up to stride() words, so that
+//        one pass over the labels of a site serves all its arcs, some words at a time. Labels
+//        stand in groups of group_bits(), and the union of the rows of every subset of a group is
+//        kept: a set is looked up group by group.
+// Cost:  2^group_bits() / group_bits() * labels * stride() words of memory: 130 KB for 64 labels
+//        of a grid, 390 KB for 128, 590 KB for 256, 9 MB for 1 000.
 // Thread-safe once filled.
 class Relations {
   public:
-    static constexpr std::size_t kGroupLabels = 4;
+    // Groups are bytes as long as their table fits the caches of a core, nibbles beyond.
+    static constexpr std::size_t group_bits_for(std::size_t words) { return words <= 2 ? 8 : 4; }
+
+    static constexpr std::size_t stride_for(std::size_t relation_count, std::size_t words) {
+        return (relation_count * words + kVectorWords - 1) / kVectorWords * kVectorWords;
+    }
 
     // reverse[r] is the relation of the same arc seen from its far end.
     // Requires: reverse[reverse[r]] == r (checked).
@@ -39,36 +45,42 @@ class Relations {
 
     // The labels that may stand at the far end when `label` stands at the near one.
     [[nodiscard]] std::span<const Word> row(RelationId relation, Label label) const {
-        return {row_data(label) + relation * words_, words_};
+        const std::size_t member = std::size_t{1} << (label % group_bits_);
+        return {union_data(label / group_bits_, member) + relation * words_, words_};
     }
 
-    // The rows of all relations of one label: count() * words() words.
-    [[nodiscard]] const Word* row_data(Label label) const {
-        return union_data(
-            label / kGroupLabels, std::size_t{1} << (label % kGroupLabels), reverse_.size() * words_
-        );
-    }
-
-    // The union of those rows over the labels of a group that `members` has a bit for: label
-    // kGroupLabels * group + i at bit i. `width` is count() * words(), which inner loops know.
-    [[nodiscard]] const Word* union_data(std::size_t group, std::size_t members, std::size_t width)
-        const {
-        return unions_.data() + (group << kGroupLabels | members) * width;
+    // The union of the rows over the labels of a group that `members` has a bit for: label
+    // group_bits() * group + i at bit i. The rows of all unions lie one after the other, those of
+    // a group by rising `members`, the first one at a multiple of 64 bytes.
+    [[nodiscard]] const Word* union_data(std::size_t group, std::size_t members) const {
+        return unions_.data()->words + (group << group_bits_ | members) * stride_;
     }
 
     [[nodiscard]] std::size_t label_count() const { return label_count_; }
 
     [[nodiscard]] std::size_t words() const { return words_; }
 
+    [[nodiscard]] std::size_t stride() const { return stride_; }
+
+    [[nodiscard]] std::size_t group_bits() const { return group_bits_; }
+
     [[nodiscard]] std::size_t count() const { return reverse_.size(); }
 
     [[nodiscard]] RelationId reverse(RelationId relation) const { return reverse_[relation]; }
 
   private:
+    static constexpr std::size_t kVectorWords = 4;
+
+    struct alignas(64) CacheLine {
+        Word words[8] = {};
+    };
+
     std::size_t label_count_;
     std::size_t words_;
+    std::size_t group_bits_;
     std::vector<RelationId> reverse_;
-    std::vector<Word> unions_;
+    std::size_t stride_;
+    std::vector<CacheLine> unions_;
 };
 
 }  // namespace modelsynth

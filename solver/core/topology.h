@@ -2,6 +2,7 @@
 
 #include "solver/core/relations.h"
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -22,6 +23,19 @@ concept Topology = requires(const T& topology, Site site, void (*visit)(Site, Re
     { topology.site_count() } -> std::convertible_to<std::size_t>;
     { T::kRelationCount } -> std::convertible_to<std::size_t>;
     topology.for_each_arc(site, visit);
+};
+
+// A topology of an implicit grid: most arcs of a relation are the same step from site to site, and
+// propagation goes faster where all are.
+//
+// has_steps_only(): whether they are. Then site + steps()[r] is the far end of the arc along r, and
+// bit r of arc_masks()[site] says whether there is that arc. reach() is the longest step.
+template <class T>
+concept SteppedTopology = Topology<T> &&(T::kRelationCount > 0) && requires(const T& topology) {
+    { topology.has_steps_only() } -> std::convertible_to<bool>;
+    { topology.steps() } -> std::convertible_to<std::array<std::int64_t, T::kRelationCount>>;
+    { topology.arc_masks() } -> std::convertible_to<const std::uint8_t*>;
+    { topology.reach() } -> std::convertible_to<std::size_t>;
 };
 
 // A part of a topology that is changed while the rest stands still: its sites numbered anew from

@@ -1,0 +1,216 @@
+#pragma once
+
+#include "solver/core/label_set.h"
+#include "solver/core/relations.h"
+#include "solver/core/topology.h"
+#include "solver/core/vector_level.h"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+namespace modelsynth {
+
+enum class Propagation : std::uint8_t { kConsistent, kContradiction, kStopped };
+
+// The catalog's state, as the inner loop sees it: what Catalog holds in vectors, by address.
+template <std::size_t kRelations>
+struct StepState {
+    Word* sets = nullptr;  // of site 0; those of a step before the first and after the last can be
+                           // read, and say nothing
+    std::array<std::int64_t, kRelations> steps = {};  // from a site to its neighbour, by relation
+    const std::uint8_t* arcs = nullptr;               // bit r of a site: there is that neighbour
+    const Word* unions = nullptr;                     // Relations::union_data() of the first group
+
+    // The sites to look at, a ring in which each is once at most.
+    Site* queue = nullptr;
+    std::size_t queue_size = 0;
+    std::size_t queue_head = 0;
+    std::size_t queue_length = 0;
+    std::uint8_t* queued = nullptr;
+
+    // What to put back; there is room for every site once.
+    bool is_saving = false;
+    std::uint64_t stamp = 0;
+    std::uint64_t* saved = nullptr;  // the stamp under which a site is on the trail
+    Site* trail_sites = nullptr;
+    Word* trail_words = nullptr;
+    std::size_t trail_length = 0;
+
+    std::vector<Site>* changed = nullptr;  // null: nobody wants to know
+    Site emptied = 0;
+};
+
+// Catalog::propagate() where every neighbour is a fixed step away: the loop that most of all time
+// is spent in. It looks at all neighbours of a site at once and keeps its state in registers.
+//
+// One source serves every VectorLevel; the compiler makes of it what the level allows, so results
+// are the same.
+template <std::size_t kRelations, std::size_t kWords>
+class StepKernel {
+  public:
+    static Propagation run(
+        StepState<kRelations>& state, const std::stop_token& stop, VectorLevel level
+    ) {
+        return level == VectorLevel::kAvx2 ? run_avx2(state, stop) : run_portable(state, stop);
+    }
+
+  private:
+    static constexpr std::size_t kGroupBits = Relations::group_bits_for(kWords);
+    static constexpr std::size_t kGroups = kWordBits / kGroupBits;  // of one word
+    static constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
+    static constexpr std::size_t kStride = Relations::stride_for(kRelations, kWords);
+    static constexpr std::size_t kStopInterval = 1024;
+
+    using Vector [[gnu::vector_size(32), gnu::may_alias]] = Word;
+
+    static constexpr std::size_t kVectorWords = sizeof(Vector) / sizeof(Word);
+    static constexpr std::size_t kVectors = kStride / kVectorWords;
+
+    // The labels that some label of the site's set allows, relation by relation.
+    struct alignas(Vector) Support {
+        Word words[kStride];
+    };
+
+    MODELSYNTH_TARGET_AVX2 static Propagation run_avx2(
+        StepState<kRelations>& state, const std::stop_token& stop
+    ) {
+        return loop(state, stop);
+    }
+
+    static Propagation run_portable(StepState<kRelations>& state, const std::stop_token& stop) {
+        return loop(state, stop);
+    }
+
+    [[gnu::always_inline]] static inline void collect(
+        const Word* own, const Word* unions, Support& support
+    ) {
+        Vector sum[kVectors] = {};
+        if constexpr (kWords == 1) {
+            // Looking up empty groups too is cheaper than to mispredict how many there are.
+            for (std::size_t group = 0; group < kGroups; ++group) {
+                add(unions, group, own[0] >> group * kGroupBits & kMembers, sum);
+            }
+        } else {
+            for (std::size_t word = 0; word < kWords; ++word) {
+                for (Word bits = own[word]; bits != 0;) {
+                    const auto group =
+                        static_cast<std::size_t>(std::countr_zero(bits)) / kGroupBits;
+                    const std::size_t shift = group * kGroupBits;
+                    add(unions, word * kGroups + group, bits >> shift & kMembers, sum);
+                    bits &= ~(kMembers << shift);
+                }
+            }
+        }
+        for (std::size_t i = 0; i < kVectors; ++i) {
+            reinterpret_cast<Vector*>(support.words)[i] = sum[i];
+        }
+    }
+
+    [[gnu::always_inline]] static inline void add(
+        const Word* unions, std::size_t group, Word members, Vector* sum
+    ) {
+        const auto* row = reinterpret_cast<const Vector*>(
+            unions + (group << kGroupBits | static_cast<std::size_t>(members)) * kStride
+        );
+        for (std::size_t i = 0; i < kVectors; ++i) {
+            sum[i] |= row[i];
+        }
+    }
+
+    // Bit r: the neighbour along relation r, or what lies there in memory, has a label without
+    // support.
+    [[gnu::always_inline]] static inline unsigned find_unsupported(
+        const Word* own, const std::array<std::int64_t, kRelations>& steps, const Support& support
+    ) {
+        unsigned unsupported = 0;
+        for (std::size_t relation = 0; relation < kRelations; ++relation) {
+            const Word* set = own + steps[relation] * static_cast<std::int64_t>(kWords);
+            Word removed = 0;
+            for (std::size_t word = 0; word < kWords; ++word) {
+                removed |= set[word] & ~support.words[relation * kWords + word];
+            }
+            unsupported |= static_cast<unsigned>(removed != 0) << relation;
+        }
+        return unsupported;
+    }
+
+    [[gnu::always_inline]] static inline Propagation loop(
+        StepState<kRelations>& state, const std::stop_token& stop
+    ) {
+        // Copies, so that the compiler sees that no store changes them.
+        const auto steps = state.steps;
+        const std::uint8_t* const arcs = state.arcs;
+        const Word* const unions = state.unions;
+        Word* const sets = state.sets;
+        Site* const queue = state.queue;
+        const std::size_t queue_size = state.queue_size;
+        std::size_t head = state.queue_head;
+        std::size_t length = state.queue_length;
+        std::uint8_t* const queued = state.queued;
+        const bool is_saving = state.is_saving;
+        const std::uint64_t stamp = state.stamp;
+        std::uint64_t* const saved = state.saved;
+        Site* const trail_sites = state.trail_sites;
+        Word* const trail_words = state.trail_words;
+        std::size_t trail = state.trail_length;
+        std::vector<Site>* const changed = state.changed;
+
+        Propagation result = Propagation::kConsistent;
+        std::size_t looked_at = 0;
+        while (length > 0 && result == Propagation::kConsistent) {
+            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
+                result = Propagation::kStopped;
+                break;
+            }
+            const Site site = queue[head];
+            head = head + 1 < queue_size ? head + 1 : 0;
+            --length;
+            queued[site] = 0;
+            Word* const own = sets + site * kWords;
+            Support support;
+            collect(own, unions, support);
+            unsigned left = find_unsupported(own, steps, support) & arcs[site];
+            for (; left != 0; left &= left - 1) {
+                const auto relation = static_cast<std::size_t>(std::countr_zero(left));
+                const auto neighbour =
+                    static_cast<Site>(static_cast<std::int64_t>(site) + steps[relation]);
+                Word* const set = sets + neighbour * kWords;
+                if (changed != nullptr) {
+                    changed->push_back(neighbour);
+                }
+                if (is_saving && saved[neighbour] != stamp) {
+                    saved[neighbour] = stamp;
+                    trail_sites[trail] = neighbour;
+                    for (std::size_t word = 0; word < kWords; ++word) {
+                        trail_words[trail * kWords + word] = set[word];
+                    }
+                    ++trail;
+                }
+                Word any = 0;
+                for (std::size_t word = 0; word < kWords; ++word) {
+                    set[word] &= support.words[relation * kWords + word];
+                    any |= set[word];
+                }
+                if (queued[neighbour] == 0) {
+                    queued[neighbour] = 1;
+                    const std::size_t end = head + length++;
+                    queue[end < queue_size ? end : end - queue_size] = neighbour;
+                }
+                if (any == 0) [[unlikely]] {
+                    state.emptied = neighbour;
+                    result = Propagation::kContradiction;
+                }
+            }
+        }
+        state.queue_head = head;
+        state.queue_length = length;
+        state.trail_length = trail;
+        return result;
+    }
+};
+
+}  // namespace modelsynth
