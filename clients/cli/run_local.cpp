@@ -100,7 +100,8 @@ class Watchdog {
 Outcome<Finished> solve(const proto::JobRequest& request, ProgressDisplay& display) {
     ShowProgress observer(display);
     const Watchdog watchdog(request.deadline_seconds);
-    auto finished = run(request.task, observer, watchdog.token());
+    Preparations preparations;
+    auto finished = run(request.task, preparations, observer, watchdog.token());
     display.finish();
     if (is_interrupted()) {
         return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});

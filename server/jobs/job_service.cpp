@@ -70,7 +70,15 @@ void JobService::work(const std::stop_token& stop) {
     // A notification is a hint; what is queued is found by looking.
     constexpr auto kPoll = std::chrono::milliseconds(250);
     const WorkerContext context = {
-        jobs_, events_, artifacts_, examples_, live_, running_, config_.limits, log_};
+        jobs_,
+        events_,
+        artifacts_,
+        examples_,
+        live_,
+        running_,
+        preparations_,
+        config_.limits,
+        log_};
     std::uint64_t seen = 0;
     while (!stop.stop_requested()) {
         {

@@ -123,6 +123,7 @@ class JobService {
     ExampleLibrary examples_;
     LiveJobs live_;
     RunningJobs running_;
+    Preparations preparations_;
     std::atomic<bool> draining_ = false;
     std::atomic<proto::UnixMillis> last_expiry_ = 0;
     std::mutex mutex_;

@@ -73,7 +73,8 @@ class ClaimRun {
         );
         const auto begun = Clock::now();
         const Checkpoint* from = earlier.checkpoint ? &*earlier.checkpoint : nullptr;
-        auto finished = modelsynth::run(task, observer, running_.token(), from);
+        auto finished =
+            modelsynth::run(task, context_.preparations, observer, running_.token(), from);
         const std::chrono::duration<double> solving = Clock::now() - begun;
         if (observer.diverged()) {
             context_.log->error(

@@ -30,6 +30,7 @@ struct WorkerContext {
     ExampleLibrary& examples;
     LiveJobs& live;
     RunningJobs& running;
+    Preparations& preparations;
     const proto::RequestLimits& limits;
     std::shared_ptr<spdlog::logger> log;
 };

@@ -13,6 +13,8 @@ struct BlockLayout {
     GridSize size = {10, 10, 10};  // cells; a block larger than the model is cut to it
     double overlap = 0.5;          // share of a block that its successor covers again, [0, 1)
     std::uint32_t passes = 1;      // how often the whole schedule is run
+
+    friend bool operator==(const BlockLayout&, const BlockLayout&) = default;
 };
 
 // The blocks in the order in which they are modified: x outermost, then z, then y (the thesis's

@@ -40,7 +40,7 @@ class Catalog {
           words_(kWords == 0 ? relations.words() : kWords),
           padding_(reach_of(topology) * words_),
           sets_(topology.site_count() * words_ + 2 * padding_),
-          queue_(topology.site_count()),
+          queue_(topology.site_count() + 1),
           queued_(topology.site_count()),
           saved_(topology.site_count()),
           support_(relations.stride()) {
@@ -66,7 +66,8 @@ class Catalog {
     }
 
     // Puts back a state taken from all_labels() of a catalog of the same shape, or any sets.
-    // Nothing is queued: the state is taken to be what propagation left.
+    // Nothing is queued: the state is taken to be what propagation left. No marks are left, and
+    // changes are no longer tracked.
     void restore(std::span<const Word> sets) {
         std::copy(sets.begin(), sets.end(), set(0));
         forget_queue();
@@ -205,7 +206,7 @@ class Catalog {
     }
 
     Propagation propagate_by_steps(const std::stop_token& stop) requires kIsStepped {
-        reserve_trail(trail_length_ + site_count());
+        reserve_trail(trail_length_ + site_count() + 1);
         StepState<T::kRelationCount> state;
         state.sets = set(0);
         state.steps = topology_.steps();
@@ -331,6 +332,7 @@ class Catalog {
     void forget_trail() {
         marks_ = 0;
         trail_length_ = 0;
+        tracking_ = false;
     }
 
     const T& topology_;

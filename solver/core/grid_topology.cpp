@@ -39,6 +39,17 @@ bool lies_inside(const GridSize& size, const Box& box) {
            box.max.z <= size.z;
 }
 
+// The layer of the box's cells on the side of the direction.
+Box face_of(Box box, std::size_t direction) {
+    const std::size_t axis = direction / 2;
+    if (direction % 2 == 0) {
+        along(box.min, axis) = along(box.max, axis) - 1;
+    } else {
+        along(box.max, axis) = along(box.min, axis) + 1;
+    }
+    return box;
+}
+
 }  // namespace
 
 GridTopology::GridTopology(const GridSize& size, Periodic periodic) : size_(size) {
@@ -52,31 +63,22 @@ GridTopology::GridTopology(const GridSize& size, Periodic periodic) : size_(size
         steps_[direction] = sign * strides[axis];
         wrapped_steps_[direction] = -sign * strides[axis] * (extent(size, axis) - 1);
     }
-    arcs_.resize(site_count());
+    arcs_.assign(site_count(), kInside);
     if (periodic.x || periodic.y || periodic.z) {
         wraps_.resize(site_count());
     }
-    std::size_t site = 0;
-    for_each_cell(Box::whole(size), [&](const Cell& cell) {
-        unsigned arcs = 0;
-        unsigned wraps = 0;
-        for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
-            const std::size_t axis = direction / 2;
-            const std::int32_t last = direction % 2 == 0 ? extent(size, axis) - 1 : 0;
-            if (along(cell, axis) != last) {
-                arcs |= 1U << direction;
-            } else if (is_periodic(periodic, axis)) {
-                arcs |= 1U << direction;
-                wraps |= 1U << direction;
+    for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
+        const auto bit = static_cast<std::uint8_t>(1U << direction);
+        for_each_cell(face_of(Box::whole(size), direction), [&](const Cell& cell) {
+            const std::size_t site = size.index(cell);
+            arcs_[site] &= kAllArcs;  // no longer inside
+            if (is_periodic(periodic, direction / 2)) {
+                wraps_[site] |= bit;
+            } else {
+                arcs_[site] &= static_cast<std::uint8_t>(~bit);
             }
-        }
-        const bool inside = arcs == (1U << kDirectionCount) - 1 && wraps == 0;
-        arcs_[site] = static_cast<std::uint8_t>(inside ? kInside : arcs);
-        if (!wraps_.empty()) {
-            wraps_[site] = static_cast<std::uint8_t>(wraps);
-        }
-        ++site;
-    });
+        });
+    }
 }
 
 GridPart::GridPart(const GridSize& size, Periodic periodic, const Box& box)
@@ -87,16 +89,7 @@ GridPart::GridPart(const GridSize& size, Periodic periodic, const Box& box)
     check(lies_inside(size, box), "a block outside the grid");
 }
 
-Box GridPart::face(std::size_t direction) const {
-    const std::size_t axis = direction / 2;
-    Box face = box_;
-    if (direction % 2 == 0) {
-        along(face.min, axis) = along(face.max, axis) - 1;
-    } else {
-        along(face.max, axis) = along(face.min, axis) + 1;
-    }
-    return face;
-}
+Box GridPart::face(std::size_t direction) const { return face_of(box_, direction); }
 
 bool GridPart::has_outside(std::size_t direction, Cell& offset) const {
     const std::size_t axis = direction / 2;

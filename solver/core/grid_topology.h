@@ -68,7 +68,8 @@ class GridTopology {
 
   private:
     // All six neighbours, and none of them across a seam.
-    static constexpr unsigned kInside = 0xFF;
+    static constexpr std::uint8_t kInside = 0xFF;
+    static constexpr std::uint8_t kAllArcs = (1U << kDirectionCount) - 1;
 
     static Site neighbour(Site site, std::int64_t step) {
         return static_cast<Site>(static_cast<std::int64_t>(site) + step);
@@ -96,6 +97,19 @@ class GridPart {
         return static_cast<Site>(
             size_.index({cell.x + box_.min.x, cell.y + box_.min.y, cell.z + box_.min.z})
         );
+    }
+
+    template <class Visit>
+    void for_each_site(Visit visit) const {
+        Site inside = 0;
+        for (std::int32_t y = box_.min.y; y < box_.max.y; ++y) {
+            for (std::int32_t z = box_.min.z; z < box_.max.z; ++z) {
+                auto whole = static_cast<Site>(size_.index({box_.min.x, y, z}));
+                for (std::int32_t x = box_.min.x; x < box_.max.x; ++x) {
+                    visit(inside++, whole++);
+                }
+            }
+        }
     }
 
     template <class Visit>

@@ -25,14 +25,14 @@ struct StepState {
     const std::uint8_t* arcs = nullptr;               // bit r of a site: there is that neighbour
     const Word* unions = nullptr;                     // Relations::union_data() of the first group
 
-    // The sites to look at, a ring in which each is once at most.
+    // The sites to look at, a ring in which each is once at most, with room for one more.
     Site* queue = nullptr;
     std::size_t queue_size = 0;
     std::size_t queue_head = 0;
     std::size_t queue_length = 0;
     std::uint8_t* queued = nullptr;
 
-    // What to put back; there is room for every site once.
+    // What to put back; there is room for every site once, and for one more.
     bool is_saving = false;
     std::uint64_t stamp = 0;
     std::uint64_t* saved = nullptr;  // the stamp under which a site is on the trail
@@ -182,24 +182,22 @@ class StepKernel {
                 if (changed != nullptr) {
                     changed->push_back(neighbour);
                 }
-                if (is_saving && saved[neighbour] != stamp) {
-                    saved[neighbour] = stamp;
-                    trail_sites[trail] = neighbour;
-                    for (std::size_t word = 0; word < kWords; ++word) {
-                        trail_words[trail * kWords + word] = set[word];
-                    }
-                    ++trail;
+                // Written in any case and kept when needed: a branch would be mispredicted often.
+                trail_sites[trail] = neighbour;
+                for (std::size_t word = 0; word < kWords; ++word) {
+                    trail_words[trail * kWords + word] = set[word];
                 }
+                trail += static_cast<std::size_t>(is_saving & (saved[neighbour] != stamp));
+                saved[neighbour] = stamp;
                 Word any = 0;
                 for (std::size_t word = 0; word < kWords; ++word) {
                     set[word] &= support.words[relation * kWords + word];
                     any |= set[word];
                 }
-                if (queued[neighbour] == 0) {
-                    queued[neighbour] = 1;
-                    const std::size_t end = head + length++;
-                    queue[end < queue_size ? end : end - queue_size] = neighbour;
-                }
+                const std::size_t end = head + length;
+                queue[end < queue_size ? end : end - queue_size] = neighbour;
+                length += static_cast<std::size_t>(queued[neighbour] == 0);
+                queued[neighbour] = 1;
                 if (any == 0) [[unlikely]] {
                     state.emptied = neighbour;
                     result = Propagation::kContradiction;

@@ -41,14 +41,21 @@ concept SteppedTopology = Topology<T> &&(T::kRelationCount > 0) && requires(cons
 // A part of a topology that is changed while the rest stands still: its sites numbered anew from
 // 0, the arcs among them, and the arcs that lead out of it.
 //
-// global(site) is the site's number in the whole; for_each_outward_arc(visit) calls
+// global(site) is the site's number in the whole, and for_each_site(visit) calls visit(Site inside,
+// Site in_the_whole) for all, in rising order; for_each_outward_arc(visit) calls
 // visit(Site inside, Site outside_in_the_whole, RelationId seen_from_inside). Two inner topologies
 // are equal when they have the same sites and arcs.
 template <class T>
 concept TopologyPart = Topology<typename T::Inner> && std::equality_comparable<typename T::Inner> &&
-    requires(const T& part, Site site, void (*visit)(Site, Site, RelationId)) {
+    requires(
+        const T& part,
+        Site site,
+        void (*visit_site)(Site, Site),
+        void (*visit)(Site, Site, RelationId)
+    ) {
     { part.inner() } -> std::convertible_to<const typename T::Inner&>;
     { part.global(site) } -> std::convertible_to<Site>;
+    part.for_each_site(visit_site);
     part.for_each_outward_arc(visit);
 };
 

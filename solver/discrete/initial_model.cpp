@@ -126,11 +126,9 @@ std::optional<std::vector<Label>> find_tile(
     });
     std::vector<Label> tile(size.cell_count(), kNoLabel);
     const std::vector<Site> scan = column_order(size);
-    const BlockResult result = modify_block(
+    BlockSearch<GridPart> search(problem.relations, domains, problem.weights);
+    const BlockResult result = search.modify(
         part,
-        problem.relations,
-        domains,
-        problem.weights,
         std::span<Label>(tile),
         {kTileAttempts, Order::kScan, scan},
         {seed, kTileKey, 0, 0},
@@ -177,7 +175,10 @@ std::optional<std::vector<Label>> find_any_tile(
 class Mender {
   public:
     Mender(const Problem& problem, std::uint64_t seed, const std::stop_token& stop)
-        : problem_(problem), seed_(seed), stop_(stop) {}
+        : problem_(problem),
+          seed_(seed),
+          stop_(stop),
+          search_(problem.relations, problem.domains, problem.weights) {}
 
     bool mend(std::vector<Label>& model) {
         bool any = false;
@@ -204,11 +205,8 @@ class Mender {
             }
             const GridPart part(problem_.size, problem_.periodic, box);
             const std::vector<Site> scan = column_order(box.size());
-            const BlockResult result = modify_block(
+            const BlockResult result = search_.modify(
                 part,
-                problem_.relations,
-                problem_.domains,
-                problem_.weights,
                 std::span<Label>(model),
                 {kMendAttempts, Order::kMinEntropy, scan},
                 {seed_, kMendKey, 0, 0},
@@ -237,6 +235,7 @@ class Mender {
     const Problem& problem_;
     std::uint64_t seed_;
     const std::stop_token& stop_;
+    BlockSearch<GridPart> search_;
 };
 
 Error gave_up(const Example& example, const Problem& problem) {
@@ -272,11 +271,9 @@ Result<std::vector<Label>> solve_whole(
     std::vector<Label> model(problem.size.cell_count(), kNoLabel);
     const GridPart part(problem.size, problem.periodic, Box::whole(problem.size));
     const std::vector<Site> scan = column_order(problem.size);
-    const BlockResult result = modify_block(
+    BlockSearch<GridPart> search(problem.relations, problem.domains, problem.weights);
+    const BlockResult result = search.modify(
         part,
-        problem.relations,
-        problem.domains,
-        problem.weights,
         std::span<Label>(model),
         {kWholeAttempts, Order::kScan, scan},
         {seed, kWholeKey, 0, 0},
@@ -322,6 +319,20 @@ Error contradiction_at(const Example& example, const Problem& problem, const Cel
             (sides.empty() ? "" : ", on " + sides) + ", none of " + list_names(example, own) +
             " can stand beside what the boundary and the constraints leave to its neighbours",
         {}};
+}
+
+std::optional<std::vector<Label>> find_plain_model(const Example& example, const Problem& problem) {
+    const auto layers = find_layers(example, problem);
+    if (!layers) {
+        return std::nullopt;
+    }
+    std::vector<Label> model = spread_layers(problem, *layers);
+    for (std::size_t site = 0; site < model.size(); ++site) {
+        if (!problem.domains.at(static_cast<Site>(site)).contains(model[site])) {
+            return std::nullopt;
+        }
+    }
+    return model;
 }
 
 Result<std::vector<Label>> find_initial_model(

@@ -5,6 +5,7 @@
 #include "solver/discrete/problem.h"
 
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -21,6 +22,12 @@ namespace modelsynth::discrete {
 // fits, kGaveUp when nothing was found, kCancelled; the message names pieces and sides.
 [[nodiscard]] Result<std::vector<Label>> find_initial_model(
     const Example& example, const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+);
+
+// That model when it depends on no seed: the first way, with nothing to mend. Nothing when there is
+// none.
+[[nodiscard]] std::optional<std::vector<Label>> find_plain_model(
+    const Example& example, const Problem& problem
 );
 
 // The sites of a grid column by column, each from the bottom up: the order of Algorithm 3.1.

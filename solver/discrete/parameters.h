@@ -22,6 +22,8 @@ using Weights = std::variant<WeightRule, WeightList>;
 struct Blocks {
     BlockLayout layout;
     std::uint32_t attempts = 8;
+
+    friend bool operator==(const Blocks&, const Blocks&) = default;
 };
 
 enum class ConstraintKind : std::uint8_t { kFixed, kForbidden };
@@ -33,6 +35,8 @@ struct Constraint {
     std::vector<std::string> pieces;
     std::optional<Box> box;
     std::vector<Cell> cells;
+
+    friend bool operator==(const Constraint&, const Constraint&) = default;
 };
 
 // What a discrete synthesis can be asked for; plain data, every field with a usable default once
@@ -45,6 +49,8 @@ struct Parameters {
     Order order = Order::kScan;
     std::optional<Weights> weights;  // none: the example's default
     std::vector<Constraint> constraints;
+
+    friend bool operator==(const Parameters&, const Parameters&) = default;
 };
 
 // Attempts at the whole model where there are no blocks.

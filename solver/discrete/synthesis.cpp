@@ -1,10 +1,10 @@
 #include "solver/discrete/synthesis.h"
 
 #include "solver/core/block_schedule.h"
-#include "solver/core/block_search.h"
 #include "solver/discrete/initial_model.h"
-#include "solver/discrete/problem.h"
 
+#include <algorithm>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,37 +18,44 @@ Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", 
 // One run; the state that its steps share.
 class Run {
   public:
-    Run(const Example& example,
-        const Parameters& parameters,
-        const Problem& problem,
+    Run(Preparation& preparation,
         std::uint64_t seed,
         Observer& observer,
         const std::stop_token& stop)
-        : example_(example),
-          parameters_(parameters),
-          problem_(problem),
+        : preparation_(preparation),
+          problem_(preparation.problem()),
           seed_(seed),
           observer_(observer),
-          stop_(stop) {}
+          stop_(stop),
+          search_(preparation.take_search()) {}
+
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+
+    ~Run() { preparation_.give_back(std::move(search_), part_cells_max_); }
 
     Result<Synthesis> in_blocks(const Blocks& blocks, const Checkpoint* from) {
         auto schedule = schedule_blocks(problem_.size, blocks.layout, kBlockCountMax);
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
         }
-        auto initial = find_initial_model(example_, problem_, seed_, stop_);
-        if (!initial) {
-            return tl::unexpected(std::move(initial.error()));
+        Result<std::vector<Label>> mended;
+        if (!preparation_.plain_model()) {
+            mended = find_initial_model(preparation_.example(), problem_, seed_, stop_);
+            if (!mended) {
+                return tl::unexpected(std::move(mended.error()));
+            }
         }
-        labels_ = *initial;
+        const std::vector<Label>& initial =
+            preparation_.plain_model() ? *preparation_.plain_model() : *mended;
+        labels_ = initial;
         if (from != nullptr) {
             go_on_from(*from, schedule->size());
         }
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
-        BlockBases<GridTopology> bases;
         observer_.on_start(blocks_total_, labels_);
         for (const Box& block : std::span(*schedule).subspan(block_index_)) {
-            const BlockResult result = modify(block, blocks.attempts, &bases);
+            const BlockResult result = modify(block, blocks.attempts);
             if (result.outcome == BlockOutcome::kStopped) {
                 return tl::unexpected(cancelled());
             }
@@ -60,7 +67,7 @@ class Run {
         }
         std::size_t changed = 0;
         for (std::size_t site = 0; site < labels_.size(); ++site) {
-            changed += std::size_t{labels_[site] != (*initial)[site]};
+            changed += std::size_t{labels_[site] != initial[site]};
         }
         return finish(static_cast<double>(changed) / static_cast<double>(labels_.size()));
     }
@@ -75,7 +82,7 @@ class Run {
         }
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
-        const BlockResult result = modify(whole, kWholeAttempts, nullptr);
+        const BlockResult result = modify(whole, kWholeAttempts);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -83,9 +90,9 @@ class Run {
             case BlockOutcome::kStopped:
                 return tl::unexpected(cancelled());
             case BlockOutcome::kImpossible:
-                return tl::unexpected(
-                    contradiction_at(example_, problem_, problem_.size.cell(result.impossible_site))
-                );
+                return tl::unexpected(contradiction_at(
+                    preparation_.example(), problem_, problem_.size.cell(result.impossible_site)
+                ));
             case BlockOutcome::kReverted:
                 break;
         }
@@ -109,7 +116,7 @@ class Run {
         stats_.blocks_reverted = from.blocks_done - from.blocks_accepted;
     }
 
-    BlockResult modify(const Box& block, std::uint32_t attempts, BlockBases<GridTopology>* bases) {
+    BlockResult modify(const Box& block, std::uint32_t attempts) {
         if (stop_.stop_requested()) {
             return {BlockOutcome::kStopped, 0, 0};
         }
@@ -118,17 +125,14 @@ class Run {
         if (shape != scan_shape_) {
             scan_ = column_order(shape);
             scan_shape_ = shape;
+            part_cells_max_ = std::max(part_cells_max_, scan_.size());
         }
-        return modify_block(
+        return search_->modify(
             part,
-            problem_.relations,
-            problem_.domains,
-            problem_.weights,
             std::span<Label>(labels_),
-            {attempts, parameters_.order, scan_},
+            {attempts, preparation_.parameters().order, scan_},
             {seed_, block_index_, 0, 0},
-            stop_,
-            bases
+            stop_
         );
     }
 
@@ -152,12 +156,13 @@ class Run {
         return {problem_.size, std::move(labels_), stats_};
     }
 
-    const Example& example_;
-    const Parameters& parameters_;
+    Preparation& preparation_;
     const Problem& problem_;
     std::uint64_t seed_;
     Observer& observer_;
     const std::stop_token& stop_;
+    std::unique_ptr<Preparation::Search> search_;
+    std::size_t part_cells_max_ = 0;
     std::vector<Label> labels_;
     std::vector<Site> scan_;
     GridSize scan_shape_;
@@ -169,6 +174,18 @@ class Run {
 }  // namespace
 
 Result<Synthesis> synthesise(
+    Preparation& preparation,
+    std::uint64_t seed,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from
+) {
+    const auto& blocks = *preparation.parameters().blocks;
+    Run run(preparation, seed, observer, stop);
+    return blocks ? run.in_blocks(*blocks, from) : run.at_once(from);
+}
+
+Result<Synthesis> synthesise(
     const Example& example,
     const Parameters& parameters,
     std::uint64_t seed,
@@ -176,12 +193,12 @@ Result<Synthesis> synthesise(
     const std::stop_token& stop,
     const Checkpoint* from
 ) {
-    auto problem = make_problem(example, parameters);
-    if (!problem) {
-        return tl::unexpected(std::move(problem.error()));
+    const std::shared_ptr<const Example> not_owned(std::shared_ptr<const Example>(), &example);
+    const auto preparation = Preparation::make(not_owned, parameters);
+    if (!preparation) {
+        return tl::unexpected(preparation.error());
     }
-    Run run(example, parameters, *problem, seed, observer, stop);
-    return *parameters.blocks ? run.in_blocks(**parameters.blocks, from) : run.at_once(from);
+    return synthesise(**preparation, seed, observer, stop, from);
 }
 
 }  // namespace modelsynth::discrete

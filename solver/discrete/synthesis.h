@@ -4,6 +4,7 @@
 #include "solver/core/result.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
+#include "solver/discrete/preparation.h"
 
 #include <cstdint>
 #include <stop_token>
@@ -31,11 +32,19 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
 // With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;
 // the result is that of a run without.
-// Requires: defaults filled in and find_faults() empty (checked).
 // Ensures:  equal arguments give equal labels and equal reports, on any machine.
 // Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
 //           block and within one propagation.
 // Cost:     O(cells) blocks of constant size; memory: 4 bytes a cell and one block's catalog.
+[[nodiscard]] Result<Synthesis> synthesise(
+    Preparation& preparation,
+    std::uint64_t seed,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from = nullptr
+);
+
+// The same with a preparation of its own; see Preparation::make() for what it requires.
 [[nodiscard]] Result<Synthesis> synthesise(
     const Example& example,
     const Parameters& parameters,

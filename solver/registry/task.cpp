@@ -58,11 +58,19 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
 GridSize model_size(const Parameters& parameters) { return *discrete_of(parameters).size; }
 
 Result<Finished> run(
-    const Task& task, Observer& observer, const std::stop_token& stop, const Checkpoint* from
+    const Task& task,
+    Preparations& preparations,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from
 ) {
-    auto made = discrete::synthesise(
-        discrete_of(task.example), discrete_of(task.parameters), task.seed, observer, stop, from
-    );
+    const auto& example = std::get<std::shared_ptr<const discrete::Example>>(task.example);
+    const auto preparation =
+        preparations.discrete.find_or_make(example, discrete_of(task.parameters));
+    if (!preparation) {
+        return tl::unexpected(preparation.error());
+    }
+    auto made = discrete::synthesise(**preparation, task.seed, observer, stop, from);
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }

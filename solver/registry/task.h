@@ -5,6 +5,7 @@
 #include "solver/core/result.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
+#include "solver/discrete/preparation.h"
 #include "solver/mesh/scene.h"
 
 #include <cstdint>
@@ -63,10 +64,17 @@ struct Task {
 // How large the model will be.
 [[nodiscard]] GridSize model_size(const Parameters& parameters);
 
+// What solvers keep from task to task, so that requests that differ in their seed alone need not
+// begin from nothing. It changes no result. Thread-safe.
+struct Preparations {
+    discrete::PreparationCache discrete;
+};
+
 // Runs the synthesis, from the start or from a checkpoint of the same task; see the solver's own
 // header for what it ensures and how it fails.
 [[nodiscard]] Result<Finished> run(
     const Task& task,
+    Preparations& preparations,
     Observer& observer,
     const std::stop_token& stop,
     const Checkpoint* from = nullptr

@@ -50,6 +50,7 @@ class WorkerOnAnEarlierLog : public testing::Test {
              examples_,
              live_,
              running_,
+             preparations_,
              limits_,
              std::make_shared<spdlog::logger>(
                  "none", std::make_shared<spdlog::sinks::null_sink_mt>()
@@ -116,6 +117,7 @@ class WorkerOnAnEarlierLog : public testing::Test {
     ExampleLibrary examples_{store_.examples(), store_.artifacts(), limits_, 10};
     LiveJobs live_;
     RunningJobs running_;
+    Preparations preparations_;
 };
 
 TEST_F(WorkerOnAnEarlierLog, OwnBlocksAreSolvedAgainAndNotLoggedAgain) {

@@ -64,6 +64,13 @@ class WholeGraph {
     [[nodiscard]] Site global(Site site) const { return site; }
 
     template <class Visit>
+    void for_each_site(Visit visit) const {
+        for (Site site = 0; site < graph_.site_count(); ++site) {
+            visit(site, site);
+        }
+    }
+
+    template <class Visit>
     void for_each_outward_arc(Visit /*visit*/) const {}
 
   private:
@@ -244,17 +251,10 @@ TEST(BlockSearch, ColoursAGeneralGraph) {
     std::vector<Label> labels(10, kNoLabel);
     std::vector<Site> scan(10);
     std::iota(scan.begin(), scan.end(), Site{0});
+    BlockSearch<WholeGraph> search(relations, domains, weights);
     for (const Order order : {Order::kScan, Order::kMinEntropy, Order::kRandom}) {
-        const BlockResult result = modify_block(
-            part,
-            relations,
-            domains,
-            weights,
-            std::span<Label>(labels),
-            {50, order, scan},
-            {3, 0, 0, 0},
-            {}
-        );
+        const BlockResult result =
+            search.modify(part, std::span<Label>(labels), {50, order, scan}, {3, 0, 0, 0}, {});
         ASSERT_EQ(result.outcome, BlockOutcome::kAccepted);
         for (Site site = 0; site < 10; ++site) {
             graph.for_each_arc(site, [&](Site to, RelationId) {
@@ -277,16 +277,10 @@ TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
     const std::array<double, 2> given = {1, 1};
     std::vector<Label> labels(3, 1);
     const std::vector<Site> scan = {0, 1, 2};
-    const BlockResult result = modify_block(
-        WholeGraph(graph),
-        relations,
-        domains,
-        LabelWeights(given),
-        std::span<Label>(labels),
-        {5, Order::kScan, scan},
-        {},
-        {}
-    );
+    const LabelWeights weights(given);
+    const BlockResult result =
+        BlockSearch<WholeGraph>(relations, domains, weights)
+            .modify(WholeGraph(graph), std::span<Label>(labels), {5, Order::kScan, scan}, {}, {});
     EXPECT_EQ(result.outcome, BlockOutcome::kImpossible);
     EXPECT_EQ(labels, (std::vector<Label>{1, 1, 1}));  // as it was
 }
@@ -318,6 +312,7 @@ TEST(BlockSearch, KnowledgeKeptFromBlockToBlockChangesNoResult) {
     std::vector<Label> with(size.cell_count(), 3);
     std::vector<Label> without = with;
     BlockBases<GridTopology> bases;
+    BlockSearch<GridPart> keeping(relations, domains, weights, &bases);
     // 4x3x5 and 5x3x4 have as many sites each: only the topology tells them apart.
     const std::vector<Box> blocks = {
         {{0, 0, 0}, {4, 3, 5}},
@@ -331,13 +326,12 @@ TEST(BlockSearch, KnowledgeKeptFromBlockToBlockChangesNoResult) {
         std::iota(scan.begin(), scan.end(), Site{0});
         const BlockOptions options = {4, Order::kScan, scan};
         const RandomKey key = {5, index, 0, 0};
-        const auto search = [&](std::vector<Label>& labels, BlockBases<GridTopology>* kept) {
-            return modify_block(
-                part, relations, domains, weights, std::span<Label>(labels), options, key, {}, kept
-            );
-        };
-        EXPECT_EQ(search(with, &bases).outcome, BlockOutcome::kAccepted) << index;
-        EXPECT_EQ(search(without, nullptr).outcome, BlockOutcome::kAccepted) << index;
+        BlockSearch<GridPart> forgetful(relations, domains, weights);
+        EXPECT_EQ(keeping.modify(part, with, options, key, {}).outcome, BlockOutcome::kAccepted)
+            << index;
+        EXPECT_EQ(
+            forgetful.modify(part, without, options, key, {}).outcome, BlockOutcome::kAccepted
+        ) << index;
         EXPECT_EQ(with, without) << index;
     }
     EXPECT_NE(with, std::vector<Label>(size.cell_count(), 3));
@@ -380,16 +374,10 @@ TEST(BlockSearch, StopsWhenAskedAndLeavesTheModel) {
     const SiteDomains domains(size.cell_count(), LabelSet::all(3));
     const std::array<double, 3> given = {1, 1, 1};
     std::vector<Label> labels(size.cell_count(), 2);
-    const BlockResult result = modify_block(
-        part,
-        relations,
-        domains,
-        LabelWeights(given),
-        std::span<Label>(labels),
-        {1, Order::kRandom, {}},
-        {},
-        stop.get_token()
-    );
+    const LabelWeights weights(given);
+    const BlockResult result =
+        BlockSearch<GridPart>(relations, domains, weights)
+            .modify(part, std::span<Label>(labels), {1, Order::kRandom, {}}, {}, stop.get_token());
     EXPECT_EQ(result.outcome, BlockOutcome::kStopped);
     EXPECT_TRUE(std::all_of(labels.begin(), labels.end(), [](Label l) { return l == 2; }));
 }

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "solver/core/block_bases.h"
+#include "solver/core/block_search.h"
+#include "solver/core/grid_topology.h"
+#include "solver/core/result.h"
+#include "solver/discrete/example.h"
+#include "solver/discrete/parameters.h"
+#include "solver/discrete/problem.h"
+
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace modelsynth::discrete {
+
+// All of a synthesis that does not depend on its seed: transitions, domains, a plain initial model,
+// what propagation makes of the boundary (the fixpoint before the first choice), and the memory of
+// searches that ended. Kept from request to request it changes no result, only the time.
+// Thread-safe.
+class Preparation {
+  public:
+    using Search = BlockSearch<GridPart>;
+
+    // Requires: defaults filled in and find_faults() empty (checked).
+    // Fails:    as make_problem().
+    [[nodiscard]] static Result<std::shared_ptr<Preparation>> make(
+        std::shared_ptr<const Example> example, const Parameters& parameters
+    );
+
+    Preparation(const Preparation&) = delete;
+    Preparation& operator=(const Preparation&) = delete;
+
+    [[nodiscard]] const Example& example() const { return *example_; }
+
+    [[nodiscard]] const Parameters& parameters() const { return parameters_; }
+
+    [[nodiscard]] const Problem& problem() const { return problem_; }
+
+    // See find_plain_model(); nothing either when the whole is made at once.
+    [[nodiscard]] const std::optional<std::vector<Label>>& plain_model() const {
+        return plain_model_;
+    }
+
+    // A search for one thread, given back at the end with how many cells its parts had at most.
+    [[nodiscard]] std::unique_ptr<Search> take_search();
+    void give_back(std::unique_ptr<Search> search, std::size_t part_cells);
+
+  private:
+    Preparation(
+        std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
+    );
+
+    std::shared_ptr<const Example> example_;
+    Parameters parameters_;
+    Problem problem_;
+    std::optional<std::vector<Label>> plain_model_;
+    BlockBases<GridTopology> bases_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Search>> searches_;
+};
+
+// The preparations of the requests that came last. Thread-safe.
+class PreparationCache {
+  public:
+    // That of an equal request before, or a new one. An example is known by its address.
+    // Fails: as Preparation::make().
+    [[nodiscard]] Result<std::shared_ptr<Preparation>> find_or_make(
+        const std::shared_ptr<const Example>& example, const Parameters& parameters
+    );
+
+  private:
+    // Four bytes a cell and what searches keep; a larger model takes long enough anyway.
+    static constexpr std::size_t kCellsMax = std::size_t{1} << 20;
+    static constexpr std::size_t kEntriesMax = 8;
+
+    [[nodiscard]] std::shared_ptr<Preparation> find_locked(
+        const Example& example, const Parameters& parameters
+    );
+
+    std::mutex mutex_;
+    std::list<std::shared_ptr<Preparation>> entries_;  // most recently used first
+};
+
+}  // namespace modelsynth::discrete

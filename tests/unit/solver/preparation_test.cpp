@@ -1,0 +1,123 @@
+#include "solver/discrete/preparation.h"
+
+#include "solver/discrete/synthesis.h"
+#include "solver/examples/built_in.h"
+#include "tests/support/examples.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace modelsynth::discrete {
+namespace {
+
+using testing::RecordingObserver;
+
+std::shared_ptr<const Example> castle() { return examples::built_in().front(); }
+
+Parameters sized(const Example& example, const GridSize& size, Order order = Order::kScan) {
+    Parameters parameters;
+    parameters.size = size;
+    parameters.order = order;
+    return fill_defaults(parameters, example);
+}
+
+std::vector<Label> labels_of(Preparation& preparation, std::uint64_t seed) {
+    RecordingObserver observer;
+    return synthesise(preparation, seed, observer, {}).value().labels;
+}
+
+std::vector<Label> labels_alone(const Parameters& parameters, std::uint64_t seed) {
+    RecordingObserver observer;
+    return synthesise(*castle(), parameters, seed, observer, {}).value().labels;
+}
+
+TEST(Preparation, WhatARunLeavesChangesNoLaterResult) {
+    for (const Order order : {Order::kMinEntropy, Order::kScan, Order::kRandom}) {
+        const Parameters parameters = sized(*castle(), {24, 9, 18}, order);
+        const auto preparation = Preparation::make(castle(), parameters).value();
+        for (const std::uint64_t seed : {1U, 2U, 1U}) {
+            EXPECT_EQ(labels_of(*preparation, seed), labels_alone(parameters, seed));
+        }
+    }
+}
+
+TEST(Preparation, AStoppedRunLeavesNothingBehind) {
+    const Parameters parameters = sized(*castle(), {24, 9, 18});
+    const auto preparation = Preparation::make(castle(), parameters).value();
+    std::stop_source stop;
+    stop.request_stop();
+    RecordingObserver observer;
+    EXPECT_EQ(
+        synthesise(*preparation, 3, observer, stop.get_token()).error().code, ErrorCode::kCancelled
+    );
+    EXPECT_EQ(labels_of(*preparation, 3), labels_alone(parameters, 3));
+}
+
+TEST(Preparation, ServesSeveralThreadsAtOnce) {
+    const Parameters parameters = sized(*castle(), {24, 9, 18});
+    const auto preparation = Preparation::make(castle(), parameters).value();
+    std::vector<std::vector<Label>> made(4);
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t seed = 0; seed < made.size(); ++seed) {
+            threads.emplace_back([&, seed] { made[seed] = labels_of(*preparation, seed); });
+        }
+    }
+    for (std::size_t seed = 0; seed < made.size(); ++seed) {
+        EXPECT_EQ(made[seed], labels_alone(parameters, seed));
+    }
+}
+
+TEST(PreparationCache, GivesAnEqualRequestWhatAnEarlierOnePrepared) {
+    PreparationCache cache;
+    const auto of = [&](const std::shared_ptr<const Example>& example, const GridSize& size) {
+        return cache.find_or_make(example, sized(*example, size)).value();
+    };
+    const auto first = of(castle(), {10, 9, 10});
+    EXPECT_EQ(of(castle(), {10, 9, 10}), first);
+    EXPECT_NE(of(castle(), {10, 9, 11}), first);
+    // A copy is another example: it may be changed or gone by the next request.
+    EXPECT_NE(of(std::make_shared<const Example>(*castle()), {10, 9, 10}), first);
+    Parameters forbidding = sized(*castle(), {10, 9, 10});
+    forbidding.constraints.push_back(
+        {ConstraintKind::kForbidden, {castle()->pieces[1].name}, Box{{0, 0, 0}, {1, 9, 1}}, {}}
+    );
+    EXPECT_NE(cache.find_or_make(castle(), forbidding).value(), first);
+    EXPECT_EQ(of(castle(), {10, 9, 10}), first);
+}
+
+TEST(PreparationCache, ForgetsTheOnesThatWereNotAskedForLongest) {
+    PreparationCache cache;
+    const auto of = [&](std::int32_t width) {
+        return cache.find_or_make(castle(), sized(*castle(), {width, 9, 6})).value();
+    };
+    const std::weak_ptr<Preparation> first = of(6);
+    const std::weak_ptr<Preparation> second = of(7);
+    for (std::int32_t width = 8; width < 14; ++width) {
+        EXPECT_EQ(of(6), first.lock());
+        static_cast<void>(of(width));
+    }
+    static_cast<void>(of(14));
+    EXPECT_FALSE(first.expired());
+    EXPECT_TRUE(second.expired());
+}
+
+TEST(PreparationCache, TellsWhyARequestCannotBePrepared) {
+    PreparationCache cache;
+    auto example = std::make_shared<Example>(testing::make_pillars());
+    Parameters parameters = sized(*example, {6, 6, 6});
+    parameters.constraints.push_back(
+        {ConstraintKind::kForbidden, {"a", "b", "c", "d"}, Box{{2, 2, 2}, {3, 3, 3}}, {}}
+    );
+    const auto made = cache.find_or_make(example, parameters);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::kContradiction);
+}
+
+}  // namespace
+}  // namespace modelsynth::discrete
