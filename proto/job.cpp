@@ -111,6 +111,11 @@ std::string list_json(
 
 std::string to_json(const JobResult& result) {
     const std::string self = "/v1/jobs/" + result.job_id;
+    const SearchTally& blocks = result.stats.blocks;
+    OrderedJson solved_by = OrderedJson::object();
+    for (std::size_t i = 0; i < kSolvedByCount; ++i) {
+        solved_by[kSolvedByNames[i]] = blocks.solved_by[i];
+    }
     return dump(OrderedJson{
         {"model", self + "/model.glb"},
         {"labels", self + "/labels.json"},
@@ -118,10 +123,43 @@ std::string to_json(const JobResult& result) {
         {"sha256", result.sha256},
         {"size", OrderedJson::array({result.size.x, result.size.y, result.size.z})},
         {"stats",
-         {{"blocks_accepted", result.stats.blocks_accepted},
-          {"blocks_reverted", result.stats.blocks_reverted},
+         {{"blocks_accepted", blocks.accepted()},
+          {"blocks_reverted", blocks.reverted},
+          {"solved_by", solved_by},
+          {"backtracks", blocks.backtracks},
           {"changed", result.stats.changed},
           {"solve_seconds", result.solve_seconds}}}});
+}
+
+std::string encode_tally(const SearchTally& tally) {
+    OrderedJson numbers = OrderedJson::array();
+    for (const std::uint32_t blocks : tally.solved_by) {
+        numbers.push_back(blocks);
+    }
+    numbers.push_back(tally.reverted);
+    numbers.push_back(tally.backtracks);
+    return dump(numbers);
+}
+
+std::optional<SearchTally> decode_tally(std::string_view text) {
+    const OrderedJson numbers = OrderedJson::parse(text, nullptr, false);
+    if (!numbers.is_array() || numbers.size() != kSolvedByCount + 2) {
+        return std::nullopt;
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        constexpr std::uint64_t kBlocksMax = 0xFFFFFFFF;
+        if (!numbers[i].is_number_unsigned() ||
+            (i <= kSolvedByCount && numbers[i].get<std::uint64_t>() > kBlocksMax)) {
+            return std::nullopt;
+        }
+    }
+    SearchTally tally;
+    for (std::size_t i = 0; i < kSolvedByCount; ++i) {
+        tally.solved_by[i] = numbers[i].get<std::uint32_t>();
+    }
+    tally.reverted = numbers[kSolvedByCount].get<std::uint32_t>();
+    tally.backtracks = numbers[kSolvedByCount + 1].get<std::uint64_t>();
+    return tally;
 }
 
 std::string queued_fields(std::uint64_t position) {

@@ -56,6 +56,10 @@ struct JobResult {
 
 [[nodiscard]] std::string to_json(const JobResult& result);
 
+// A tally as text, for checkpoints, and back; nothing when the text is none.
+[[nodiscard]] std::string encode_tally(const SearchTally& tally);
+[[nodiscard]] std::optional<SearchTally> decode_tally(std::string_view text);
+
 // --- events: the fields besides seq, type and time, as the JSON text of an object
 
 [[nodiscard]] std::string queued_fields(std::uint64_t position);

@@ -26,10 +26,11 @@ void show(LiveJob& live, const std::shared_ptr<Patch>& patch, std::uint64_t seq)
 
 std::optional<Checkpoint> decode(const JobCheckpoint& stored, std::size_t cell_count) {
     auto labels = proto::decode_labels(stored.labels);
-    if (!labels || labels->size() != cell_count) {
+    const auto tally = proto::decode_tally(stored.tally);
+    if (!labels || labels->size() != cell_count || !tally) {
         return std::nullopt;
     }
-    return Checkpoint{stored.blocks_done, stored.blocks_accepted, std::move(*labels)};
+    return Checkpoint{stored.blocks_done, *tally, std::move(*labels)};
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ LoggingObserver::LoggingObserver(
 void LoggingObserver::on_start(std::uint32_t blocks_total, std::span<const Label> model) {
     blocks_total_ = blocks_total;
     // The state that the live job begins with belongs to the seq that it had.
-    const bool any_block = earlier_.checkpoint && earlier_.checkpoint->blocks_accepted > 0;
+    const bool any_block = earlier_.checkpoint && earlier_.checkpoint->tally.accepted() > 0;
     const std::uint64_t first_replayed = earlier_.blocks.empty() ? 0 : earlier_.blocks.front().seq;
     const std::uint64_t known_seq = earlier_.checkpoint  ? earlier_.checkpoint_seq
                                     : first_replayed > 0 ? first_replayed - 1
@@ -187,7 +188,7 @@ std::optional<JobCheckpoint> LoggingObserver::make_checkpoint(const BlockReport&
     }
     last_checkpoint_ = now;
     return JobCheckpoint{
-        0, report.index + 1, report.blocks_accepted, proto::encode_labels(report.model)};
+        0, report.index + 1, proto::encode_tally(report.tally), proto::encode_labels(report.model)};
 }
 
 void LoggingObserver::append(

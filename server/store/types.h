@@ -64,7 +64,7 @@ struct Lease {
 struct JobCheckpoint {
     std::uint64_t seq = 0;  // the newest event included
     std::uint32_t blocks_done = 0;
-    std::uint32_t blocks_accepted = 0;
+    std::string tally;   // what became of the blocks, see proto::encode_tally()
     std::string labels;  // see proto::encode_labels()
 };
 

@@ -2,6 +2,7 @@
 
 #include "solver/core/grid.h"
 #include "solver/core/label_set.h"
+#include "solver/core/search_tally.h"
 
 #include <cstdint>
 #include <span>
@@ -16,7 +17,7 @@ struct BlockReport {
     Box region;
     bool accepted = false;
     std::uint32_t attempts = 0;
-    std::uint32_t blocks_accepted = 0;  // so far, this one included
+    SearchTally tally;  // so far, this one included
     // The labels of the whole model after the block, valid during the call.
     std::span<const Label> model;
 };
@@ -25,7 +26,7 @@ struct BlockReport {
 // goes on from, to the same end.
 struct Checkpoint {
     std::uint32_t blocks_done = 0;
-    std::uint32_t blocks_accepted = 0;
+    SearchTally tally;
     std::vector<Label> labels;  // of the whole model
 };
 

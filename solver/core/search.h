@@ -40,6 +40,11 @@ class ScanPicker {
         return false;
     }
 
+    // Where it stands, and back to there after the catalog was put back to that state.
+    [[nodiscard]] std::size_t position() const { return position_; }
+
+    void go_back(std::size_t position) { position_ = position; }
+
   private:
     std::span<const Site> order_;
     std::size_t position_ = 0;
@@ -72,14 +77,24 @@ class EntropyPicker {
             if (least.first == keys_[site] && has_several(catalog.labels(site))) {
                 return true;
             }
+            if (least.first == keys_[site]) {
+                keys_[site] = kNoKey;  // a choice that is taken back brings it here again
+            }
             std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
             heap_.pop_back();
         }
         return false;
     }
 
+    // As of ScanPicker; it follows the catalog by itself.
+    [[nodiscard]] std::size_t position() const { return 0; }
+
+    void go_back(std::size_t /*position*/) {}
+
   private:
     using Entry = std::pair<std::uint64_t, Site>;
+
+    static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
 
     template <class CatalogType>
     void push(const CatalogType& catalog, Site site) {
@@ -102,40 +117,122 @@ class EntropyPicker {
     std::vector<Entry> heap_;
 };
 
+// How much a search takes back before it fails.
+struct SearchBudget {
+    std::uint32_t backtracks = 0;  // choices taken back; 0: the first dead end is the end
+};
+
 // The loop of Algorithm 3.1 over an arc-consistent catalog: pick a site, draw a label, propagate.
-// A label that propagation refutes is taken back and removed for good, which keeps the catalog an
-// outer bound of the ideal one; only when its removal is refuted too has the search failed.
+// A label that propagation refutes is taken back and removed, which keeps the catalog an outer
+// bound of the ideal one. When its removal is refuted too, the choices before lead nowhere.
+//
+// Within its budget the search then takes back the last choice and removes that label. When that
+// does not help for a while it jumps back over several choices, further and further (patience
+// and jumps as of DeBroglie, github.com/BorisTheBrave/DeBroglie), to draw them anew.
 // Ensures: kSolved leaves exactly one label at every site.
-// Cost:    one propagation per pick. Same thread-safety as the catalog.
+// Cost:    one propagation per pick, two per choice taken back. Same thread-safety as the catalog.
 template <class CatalogType, class Picker>
-[[nodiscard]] SearchOutcome search(
-    CatalogType& catalog,
-    Picker& picker,
-    const LabelWeights& weights,
-    RandomStream& random,
-    const std::stop_token& stop
-) {
-    Site site = 0;
-    while (picker.next(catalog, site)) {
-        const Label label = weights.draw(catalog.labels(site), random);
-        const auto mark = catalog.mark();
-        catalog.assign(site, label);
-        Propagation propagation = catalog.propagate(stop);
-        if (propagation == Propagation::kContradiction) {
-            catalog.undo(mark);
-            propagation =
-                catalog.remove(site, label) ? catalog.propagate(stop) : Propagation::kContradiction;
-        } else {
-            catalog.keep();
+class Search {
+  public:
+    Search(
+        CatalogType& catalog,
+        Picker& picker,
+        const LabelWeights& weights,
+        RandomStream& random,
+        const std::stop_token& stop
+    )
+        : catalog_(catalog), picker_(picker), weights_(weights), random_(random), stop_(stop) {}
+
+    [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
+        Site site = 0;
+        while (picker_.next(catalog_, site)) {
+            const Label label = weights_.draw(catalog_.labels(site), random_);
+            const auto mark = catalog_.mark();
+            const std::size_t position = picker_.position();
+            catalog_.assign(site, label);
+            Propagation propagation = catalog_.propagate(stop_);
+            if (propagation == Propagation::kConsistent) {
+                if (budget.backtracks > 0) {
+                    choices_.push_back({mark, position, site, label});
+                } else {
+                    catalog_.keep();
+                }
+                continue;
+            }
+            if (propagation == Propagation::kContradiction) {
+                catalog_.undo(mark);
+                propagation = refute(site, label);
+            }
+            while (propagation == Propagation::kContradiction && !choices_.empty() &&
+                   backtracks_ < budget.backtracks) {
+                propagation = take_back();
+            }
+            if (propagation == Propagation::kStopped) {
+                return SearchOutcome::kStopped;
+            }
+            if (propagation == Propagation::kContradiction) {
+                return SearchOutcome::kFailed;
+            }
         }
-        if (propagation == Propagation::kStopped) {
-            return SearchOutcome::kStopped;
-        }
-        if (propagation == Propagation::kContradiction) {
-            return SearchOutcome::kFailed;
-        }
+        return SearchOutcome::kSolved;
     }
-    return SearchOutcome::kSolved;
-}
+
+    // Choices that were taken back, those jumped over counted as one.
+    [[nodiscard]] std::uint32_t backtracks() const { return backtracks_; }
+
+  private:
+    using Mark = typename CatalogType::Mark;
+
+    struct Choice {
+        Mark mark;
+        std::size_t position;  // of the picker before it
+        Site site;
+        Label label;
+    };
+
+    static constexpr std::uint32_t kPatience = 10;
+    static constexpr std::size_t kFirstJump = 4;
+    static constexpr std::uint32_t kJumpDoublingsMax = 10;
+
+    Propagation refute(Site site, Label label) {
+        return catalog_.remove(site, label) ? catalog_.propagate(stop_)
+                                            : Propagation::kContradiction;
+    }
+
+    Propagation take_back() {
+        ++backtracks_;
+        if (choices_.size() > deepest_) {
+            deepest_ = choices_.size();
+            failures_ = 0;
+            doublings_ = 0;
+        }
+        std::size_t jump = 1;
+        if (++failures_ > kPatience << doublings_) {
+            jump = std::min(choices_.size(), kFirstJump << doublings_);
+            doublings_ = std::min(doublings_ + 1, kJumpDoublingsMax);
+            failures_ = 0;
+        }
+        Choice choice = choices_.back();
+        for (std::size_t i = 0; i < jump; ++i) {
+            choice = choices_.back();
+            choices_.pop_back();
+            catalog_.undo(choice.mark);
+        }
+        picker_.go_back(choice.position);
+        // What was jumped over is not refuted.
+        return jump == 1 ? refute(choice.site, choice.label) : Propagation::kConsistent;
+    }
+
+    CatalogType& catalog_;
+    Picker& picker_;
+    const LabelWeights& weights_;
+    RandomStream& random_;
+    const std::stop_token& stop_;
+    std::vector<Choice> choices_;
+    std::uint32_t backtracks_ = 0;
+    std::size_t deepest_ = 0;
+    std::uint32_t failures_ = 0;   // since there were never more choices
+    std::uint32_t doublings_ = 0;  // of patience and jump
+};
 
 }  // namespace modelsynth

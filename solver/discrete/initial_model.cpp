@@ -19,6 +19,9 @@ constexpr std::uint32_t kMendKey = 0xFFFFFFFD;
 constexpr std::int32_t kTileMax = 8;
 constexpr std::uint32_t kTileAttempts = 4;
 constexpr std::uint32_t kMendAttempts = 8;
+// Beyond, the search needs more memory than a model in blocks should.
+constexpr std::size_t kWholeFirstCellsMax = std::size_t{1} << 17;
+constexpr std::uint32_t kWholeFirstAttempts = 4;
 
 // What most cells of each floor may be.
 std::vector<LabelSet> common_domains(const Problem& problem) {
@@ -174,11 +177,13 @@ std::optional<std::vector<Label>> find_any_tile(
 // could not be made.
 class Mender {
   public:
-    Mender(const Problem& problem, std::uint64_t seed, const std::stop_token& stop)
-        : problem_(problem),
-          seed_(seed),
-          stop_(stop),
-          search_(problem.relations, problem.domains, problem.weights) {}
+    Mender(
+        const Problem& problem,
+        BlockSearch<GridPart>& search,
+        std::uint64_t seed,
+        const std::stop_token& stop
+    )
+        : problem_(problem), search_(search), seed_(seed), stop_(stop) {}
 
     bool mend(std::vector<Label>& model) {
         bool any = false;
@@ -233,9 +238,9 @@ class Mender {
     }
 
     const Problem& problem_;
+    BlockSearch<GridPart>& search_;
     std::uint64_t seed_;
     const std::stop_token& stop_;
-    BlockSearch<GridPart> search_;
 };
 
 Error gave_up(const Example& example, const Problem& problem) {
@@ -265,23 +270,28 @@ Error gave_up(const Example& example, const Problem& problem) {
     return {ErrorCode::kGaveUp, std::move(message), {}};
 }
 
-Result<std::vector<Label>> solve_whole(
-    const Example& example, const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+// Nothing when no attempt succeeded.
+Result<std::optional<InitialModel>> solve_whole(
+    const Example& example,
+    const Problem& problem,
+    BlockSearch<GridPart>& search,
+    std::uint32_t attempts,
+    std::uint64_t seed,
+    const std::stop_token& stop
 ) {
-    std::vector<Label> model(problem.size.cell_count(), kNoLabel);
+    InitialModel model = {std::vector<Label>(problem.size.cell_count(), kNoLabel), true};
     const GridPart part(problem.size, problem.periodic, Box::whole(problem.size));
     const std::vector<Site> scan = column_order(problem.size);
-    BlockSearch<GridPart> search(problem.relations, problem.domains, problem.weights);
     const BlockResult result = search.modify(
         part,
-        std::span<Label>(model),
-        {kWholeAttempts, Order::kScan, scan},
+        std::span<Label>(model.labels),
+        {attempts, Order::kScan, scan},
         {seed, kWholeKey, 0, 0},
         stop
     );
     switch (result.outcome) {
         case BlockOutcome::kAccepted:
-            return model;
+            return std::optional(std::move(model));
         case BlockOutcome::kStopped:
             return tl::unexpected(Error{ErrorCode::kCancelled, "stopped", {}});
         case BlockOutcome::kImpossible:
@@ -291,7 +301,7 @@ Result<std::vector<Label>> solve_whole(
         case BlockOutcome::kReverted:
             break;
     }
-    return tl::unexpected(gave_up(example, problem));
+    return std::optional<InitialModel>();
 }
 
 }  // namespace
@@ -335,20 +345,46 @@ std::optional<std::vector<Label>> find_plain_model(const Example& example, const
     return model;
 }
 
-Result<std::vector<Label>> find_initial_model(
-    const Example& example, const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+Result<InitialModel> find_initial_model(
+    const Example& example,
+    const Problem& problem,
+    BlockSearch<GridPart>& search,
+    bool may_be_plain,
+    std::uint64_t seed,
+    const std::stop_token& stop
 ) {
-    if (const auto layers = find_layers(example, problem)) {
-        std::vector<Label> model = spread_layers(problem, *layers);
-        if (Mender(problem, seed, stop).mend(model)) {
+    const auto whole = [&](std::uint32_t attempts) {
+        return solve_whole(example, problem, search, attempts, seed, stop);
+    };
+    Mender mender(problem, search, seed, stop);
+    if (const auto layers = may_be_plain ? find_layers(example, problem) : std::nullopt) {
+        InitialModel model = {spread_layers(problem, *layers), false};
+        if (mender.mend(model.labels)) {
             return model;
         }
-    } else if (auto tiled = find_any_tile(problem, seed, stop)) {
-        if (Mender(problem, seed, stop).mend(*tiled)) {
-            return std::move(*tiled);
+    } else {
+        if (problem.size.cell_count() <= kWholeFirstCellsMax) {
+            auto model = whole(kWholeFirstAttempts);
+            if (!model) {
+                return tl::unexpected(std::move(model.error()));
+            }
+            if (*model) {
+                return std::move(**model);
+            }
+        }
+        auto tiled = find_any_tile(problem, seed, stop);
+        if (tiled && mender.mend(*tiled)) {
+            return InitialModel{std::move(*tiled), false};
         }
     }
-    return solve_whole(example, problem, seed, stop);
+    auto model = whole(kWholeAttempts);
+    if (!model) {
+        return tl::unexpected(std::move(model.error()));
+    }
+    if (!*model) {
+        return tl::unexpected(gave_up(example, problem));
+    }
+    return std::move(**model);
 }
 
 }  // namespace modelsynth::discrete

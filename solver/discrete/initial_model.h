@@ -1,5 +1,7 @@
 #pragma once
 
+#include "solver/core/block_search.h"
+#include "solver/core/grid_topology.h"
 #include "solver/core/result.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/problem.h"
@@ -11,20 +13,33 @@
 
 namespace modelsynth::discrete {
 
-// A model that is consistent before any block is modified (Algorithm 3.4, lines 3-5), as plain as
-// can be found. Tried in turn:
+// A model that is consistent before any block is modified (Algorithm 3.4, lines 3-5).
+struct InitialModel {
+    std::vector<Label> labels;
+    bool is_searched = false;  // as varied as any; else plain: the blocks are to make it so
+};
+
+// Tried in turn:
 //   1. one piece per floor that stands next to itself, such as ground below and nothing above;
-//   2. a small tile that repeats along x and z;
-//   3. the whole at once, by search.
-// Cells that the first two leave wrong, because something is fixed there, are mended by making a
+//   2. the whole at once, by search, a few times, unless it is large;
+//   3. a small tile that repeats along x and z;
+//   4. the whole at once, many times.
+// Where 1 and 3 leave cells wrong, because something is fixed there, they are mended by making a
 // growing box around them anew.
-// Deterministic in (problem, seed). Fails: kContradiction when propagation proves that nothing
-// fits, kGaveUp when nothing was found, kCancelled; the message names pieces and sides.
-[[nodiscard]] Result<std::vector<Label>> find_initial_model(
-    const Example& example, const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+// Without `may_be_plain` the first way is left out.
+// `search` is one of the problem's. Deterministic in (problem, seed). Fails: kContradiction when
+// propagation proves that nothing fits, kGaveUp when nothing was found, kCancelled; the message
+// names pieces and sides.
+[[nodiscard]] Result<InitialModel> find_initial_model(
+    const Example& example,
+    const Problem& problem,
+    BlockSearch<GridPart>& search,
+    bool may_be_plain,
+    std::uint64_t seed,
+    const std::stop_token& stop
 );
 
-// That model when it depends on no seed: the first way, with nothing to mend. Nothing when there is
+// The first way alone, with nothing to mend: then it depends on no seed. Nothing when there is
 // none.
 [[nodiscard]] std::optional<std::vector<Label>> find_plain_model(
     const Example& example, const Problem& problem

@@ -19,8 +19,12 @@ Preparation::Preparation(
     std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
 )
     : example_(std::move(example)), parameters_(parameters), problem_(std::move(problem)) {
-    if (*parameters_.blocks) {
+    if (const auto& blocks = *parameters_.blocks) {
         plain_model_ = find_plain_model(*example_, problem_);
+        if (plain_model_ && !can_change_middle(blocks->layout.size)) {
+            is_plain_model_rigid_ = true;
+            plain_model_.reset();
+        }
     }
 }
 
@@ -34,6 +38,22 @@ Result<std::shared_ptr<Preparation>> Preparation::make(
     return std::shared_ptr<Preparation>(
         new Preparation(std::move(example), parameters, std::move(*problem))
     );
+}
+
+bool Preparation::can_change_middle(const GridSize& block) {
+    const GridSize& size = problem_.size;
+    const auto range = [](std::int32_t extent, std::int32_t length) {
+        const std::int32_t cut = std::min(extent, length);
+        return std::pair((extent - cut) / 2, (extent - cut) / 2 + cut);
+    };
+    const auto [west, east] = range(size.x, block.x);
+    const auto [bottom, top] = range(size.y, block.y);
+    const auto [north, south] = range(size.z, block.z);
+    const GridPart middle(size, problem_.periodic, Box{{west, bottom, north}, {east, top, south}});
+    auto search = take_search();
+    const bool can_change = !search->is_determined(middle, *plain_model_, {});
+    give_back(std::move(search));
+    return can_change;
 }
 
 std::unique_ptr<Preparation::Search> Preparation::take_search() {
@@ -50,9 +70,9 @@ std::unique_ptr<Preparation::Search> Preparation::take_search() {
     );
 }
 
-void Preparation::give_back(std::unique_ptr<Search> search, std::size_t part_cells) {
+void Preparation::give_back(std::unique_ptr<Search> search) {
     const std::lock_guard lock(mutex_);
-    if (part_cells <= kKeptPartCellsMax && searches_.size() < kKeptSearchesMax) {
+    if (search->largest_part() <= kKeptPartCellsMax && searches_.size() < kKeptSearchesMax) {
         searches_.push_back(std::move(search));
     }
 }

@@ -41,24 +41,32 @@ class Preparation {
 
     [[nodiscard]] const Problem& problem() const { return problem_; }
 
-    // See find_plain_model(); nothing either when the whole is made at once.
+    // See find_plain_model(); nothing either when the whole is made at once, or when it is rigid.
     [[nodiscard]] const std::optional<std::vector<Label>>& plain_model() const {
         return plain_model_;
     }
 
-    // A search for one thread, given back at the end with how many cells its parts had at most.
+    // A plain model that no block can change: its pieces stand beside nothing but themselves, such
+    // as air in an example whose ground is not its own neighbour. It would be the result.
+    [[nodiscard]] bool is_plain_model_rigid() const { return is_plain_model_rigid_; }
+
+    // A search for one thread, given back at the end.
     [[nodiscard]] std::unique_ptr<Search> take_search();
-    void give_back(std::unique_ptr<Search> search, std::size_t part_cells);
+    void give_back(std::unique_ptr<Search> search);
 
   private:
     Preparation(
         std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
     );
 
+    // Whether a block of that size, outside of which the plain model stands, has any choice.
+    [[nodiscard]] bool can_change_middle(const GridSize& block);
+
     std::shared_ptr<const Example> example_;
     Parameters parameters_;
     Problem problem_;
     std::optional<std::vector<Label>> plain_model_;
+    bool is_plain_model_rigid_ = false;
     BlockBases<GridTopology> bases_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<Search>> searches_;

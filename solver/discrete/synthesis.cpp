@@ -32,22 +32,29 @@ class Run {
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
 
-    ~Run() { preparation_.give_back(std::move(search_), part_cells_max_); }
+    ~Run() { preparation_.give_back(std::move(search_)); }
 
     Result<Synthesis> in_blocks(const Blocks& blocks, const Checkpoint* from) {
         auto schedule = schedule_blocks(problem_.size, blocks.layout, kBlockCountMax);
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
         }
-        Result<std::vector<Label>> mended;
+        Result<InitialModel> found;
         if (!preparation_.plain_model()) {
-            mended = find_initial_model(preparation_.example(), problem_, seed_, stop_);
-            if (!mended) {
-                return tl::unexpected(std::move(mended.error()));
+            found = find_initial_model(
+                preparation_.example(),
+                problem_,
+                *search_,
+                !preparation_.is_plain_model_rigid(),
+                seed_,
+                stop_
+            );
+            if (!found) {
+                return tl::unexpected(std::move(found.error()));
             }
         }
         const std::vector<Label>& initial =
-            preparation_.plain_model() ? *preparation_.plain_model() : *mended;
+            preparation_.plain_model() ? *preparation_.plain_model() : found->labels;
         labels_ = initial;
         if (from != nullptr) {
             go_on_from(*from, schedule->size());
@@ -65,6 +72,9 @@ class Run {
             );
             report(block, result);
         }
+        if (found->is_searched) {
+            return finish(1);
+        }
         std::size_t changed = 0;
         for (std::size_t site = 0; site < labels_.size(); ++site) {
             changed += std::size_t{labels_[site] != initial[site]};
@@ -75,7 +85,7 @@ class Run {
     Result<Synthesis> at_once(const Checkpoint* from) {
         labels_.assign(problem_.size.cell_count(), kNoLabel);
         blocks_total_ = 1;
-        if (from != nullptr && from->blocks_accepted > 0) {
+        if (from != nullptr && from->tally.accepted() > 0) {
             go_on_from(*from, blocks_total_);
             observer_.on_start(blocks_total_, labels_);
             return finish(1);
@@ -107,25 +117,23 @@ class Run {
     void go_on_from(const Checkpoint& from, std::size_t blocks_total) {
         check(
             from.labels.size() == labels_.size() && from.blocks_done <= blocks_total &&
-                from.blocks_accepted <= from.blocks_done,
+                from.tally.accepted() + from.tally.reverted == from.blocks_done,
             "a checkpoint of another synthesis"
         );
         labels_ = from.labels;
         block_index_ = from.blocks_done;
-        stats_.blocks_accepted = from.blocks_accepted;
-        stats_.blocks_reverted = from.blocks_done - from.blocks_accepted;
+        stats_.blocks = from.tally;
     }
 
     BlockResult modify(const Box& block, std::uint32_t attempts) {
         if (stop_.stop_requested()) {
-            return {BlockOutcome::kStopped, 0, 0};
+            return {BlockOutcome::kStopped};
         }
         const GridPart part(problem_.size, problem_.periodic, block);
         const GridSize shape = block.size();
         if (shape != scan_shape_) {
             scan_ = column_order(shape);
             scan_shape_ = shape;
-            part_cells_max_ = std::max(part_cells_max_, scan_.size());
         }
         return search_->modify(
             part,
@@ -138,15 +146,11 @@ class Run {
 
     void report(const Box& block, const BlockResult& result) {
         const bool accepted = result.outcome == BlockOutcome::kAccepted;
-        ++(accepted ? stats_.blocks_accepted : stats_.blocks_reverted);
+        SearchTally& tally = stats_.blocks;
+        ++(accepted ? tally.solved_by[static_cast<std::size_t>(result.solved_by)] : tally.reverted);
+        tally.backtracks += result.backtracks;
         observer_.on_block(
-            {block_index_,
-             blocks_total_,
-             block,
-             accepted,
-             result.attempts,
-             stats_.blocks_accepted,
-             labels_}
+            {block_index_, blocks_total_, block, accepted, result.attempts, tally, labels_}
         );
         ++block_index_;
     }
@@ -162,7 +166,6 @@ class Run {
     Observer& observer_;
     const std::stop_token& stop_;
     std::unique_ptr<Preparation::Search> search_;
-    std::size_t part_cells_max_ = 0;
     std::vector<Label> labels_;
     std::vector<Site> scan_;
     GridSize scan_shape_;

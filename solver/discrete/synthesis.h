@@ -13,9 +13,9 @@
 namespace modelsynth::discrete {
 
 struct SynthesisStats {
-    std::uint32_t blocks_accepted = 0;
-    std::uint32_t blocks_reverted = 0;
-    // Share of cells whose label differs from the initial model; 1 where there was none.
+    SearchTally blocks;
+    // Share of cells whose label differs from the initial model; 1 where there was none, or one as
+    // varied as any.
     double changed = 0;
 };
 

@@ -96,8 +96,8 @@ void synthesise(
         "seed %llu: %u blocks accepted, %u reverted, %.0f %% changed, %zu of %zu labels, %.0f %% "
         "air\n",
         static_cast<unsigned long long>(seed),
-        model->stats.blocks_accepted,
-        model->stats.blocks_reverted,
+        model->stats.blocks.accepted(),
+        model->stats.blocks.reverted,
         100 * model->stats.changed,
         present.size(),
         example.pieces.size(),

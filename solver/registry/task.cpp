@@ -75,8 +75,7 @@ Result<Finished> run(
         return tl::unexpected(std::move(made.error()));
     }
     return Finished{
-        {made->size, std::move(made->labels)},
-        {made->stats.blocks_accepted, made->stats.blocks_reverted, made->stats.changed}};
+        {made->size, std::move(made->labels)}, {made->stats.blocks, made->stats.changed}};
 }
 
 Scene make_scene(const Example& example, const Model& model, const Box& region) {

@@ -34,8 +34,7 @@ struct Model {
 
 // What result.stats tells of a finished synthesis, beside the time it took.
 struct SynthesisStats {
-    std::uint32_t blocks_accepted = 0;
-    std::uint32_t blocks_reverted = 0;
+    SearchTally blocks;
     double changed = 0;  // share of sites that differ from the initial model
 };
 

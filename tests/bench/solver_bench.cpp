@@ -71,8 +71,8 @@ Times measure(const ExamplePointer& example, const GridSize& size, bool in_block
         }
         times.milliseconds.push_back(taken.count());
         if (model) {
-            times.accepted += model->stats.blocks_accepted;
-            times.reverted += model->stats.blocks_reverted;
+            times.accepted += model->stats.blocks.accepted();
+            times.reverted += model->stats.blocks.reverted;
             times.changed += model->stats.changed;
         } else {
             ++times.failures;

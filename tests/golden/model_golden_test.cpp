@@ -104,8 +104,8 @@ TEST_P(BuiltInModels, AreWhatTheyWere) {
         const Objects objects = find_objects(example, *model);
         text += "seed " + std::to_string(seed) + ": labels " +
                 testing::sha256_hex(proto::encode_labels(model->labels)) + ", blocks " +
-                std::to_string(model->stats.blocks_accepted) + " accepted " +
-                std::to_string(model->stats.blocks_reverted) + " reverted, changed" +
+                std::to_string(model->stats.blocks.accepted()) + " accepted " +
+                std::to_string(model->stats.blocks.reverted) + " reverted, changed" +
                 permille(
                     static_cast<std::size_t>(
                         model->stats.changed * static_cast<double>(model->labels.size()) + 0.5

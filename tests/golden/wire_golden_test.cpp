@@ -64,7 +64,12 @@ TEST(Golden, Jobs) {
     job.expires = job.created + 86'400'000;
     job.blocks_done = 8;
     job.result = to_json(JobResult{
-        job.id, 123456, std::string(64, 'a'), {7, 1, 0.8125}, 0.0123456, {12, 2, 9}});
+        job.id,
+        123456,
+        std::string(64, 'a'),
+        {{{5, 1, 1, 0}, 1, 40}, 0.8125},
+        0.0123456,
+        {12, 2, 9}});
     text += to_json(job) + "\n";
     job.state = JobState::kFailed;
     job.result.clear();
@@ -79,8 +84,8 @@ TEST(Golden, Jobs) {
 
 TEST(Golden, Events) {
     const Problem problem = make_problem("gave-up", "no model was found");
-    const BlockReport accepted = {2, 8, {{0, 0, 3}, {6, 2, 9}}, true, 1, 2, {}};
-    const BlockReport reverted = {7, 8, {{6, 0, 3}, {12, 2, 9}}, false, 3, 6, {}};
+    const BlockReport accepted = {2, 8, {{0, 0, 3}, {6, 2, 9}}, true, 1, {}, {}};
+    const BlockReport reverted = {7, 8, {{6, 0, 3}, {12, 2, 9}}, false, 3, {}, {}};
     const UnixMillis time = 1714566600250;
     std::string text;
     text += event_json(1, "queued", time, queued_fields(3)) + "\n";

@@ -79,18 +79,14 @@ Stored<Job> find_job(Database& database, const std::string& id) {
 }
 
 std::optional<JobCheckpoint> find_checkpoint(Database& database, const std::string& id) {
-    Statement row = database.prepare(
-        "SELECT seq, blocks_done, blocks_accepted, labels FROM checkpoint WHERE job_id = ?"
-    );
+    Statement row =
+        database.prepare("SELECT seq, blocks_done, tally, labels FROM checkpoint WHERE job_id = ?");
     row.bind(std::string_view(id));
     if (!row.step()) {
         return std::nullopt;
     }
     return JobCheckpoint{
-        row.natural(0),
-        static_cast<std::uint32_t>(row.natural(1)),
-        static_cast<std::uint32_t>(row.natural(2)),
-        row.blob(3)};
+        row.natural(0), static_cast<std::uint32_t>(row.natural(1)), row.text(2), row.blob(3)};
 }
 
 bool holds(Database& database, const Lease& lease) {

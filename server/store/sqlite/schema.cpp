@@ -78,6 +78,8 @@ CREATE TABLE checkpoint (
 )sql",
     R"sql(
 ALTER TABLE job ADD COLUMN version_base INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE checkpoint DROP COLUMN blocks_accepted;
+ALTER TABLE checkpoint ADD COLUMN tally TEXT NOT NULL DEFAULT '';
 )sql"};
 
 // 0: the file is new.

@@ -19,11 +19,15 @@ namespace {
 void keep_checkpoint(
     Database& database, const std::string& id, const JobCheckpoint& checkpoint, std::uint64_t seq
 ) {
-    database.prepare("INSERT OR REPLACE INTO checkpoint VALUES (?, ?, ?, ?, ?)")
+    database
+        .prepare(
+            "INSERT OR REPLACE INTO checkpoint (job_id, seq, blocks_done, tally, labels) "
+            "VALUES (?, ?, ?, ?, ?)"
+        )
         .bind(std::string_view(id))
         .bind(seq)
         .bind(std::uint64_t{checkpoint.blocks_done})
-        .bind(std::uint64_t{checkpoint.blocks_accepted})
+        .bind(std::string_view(checkpoint.tally))
         .bind_blob(checkpoint.labels)
         .run();
 }

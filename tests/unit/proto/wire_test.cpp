@@ -182,7 +182,7 @@ TEST(Events, AreAsTheContractWritesThem) {
         R"({"seq":4,"type":"cancelled","time":"1970-01-01T00:00:00.000Z"})"
     );
     EXPECT_EQ(
-        block_fields({11, 49, {{0, 0, 5}, {10, 10, 15}}, true, 2, 9, {}}),
+        block_fields({11, 49, {{0, 0, 5}, {10, 10, 15}}, true, 2, {}, {}}),
         R"({"index":11,"region":{"min":[0,0,5],"max":[10,10,15]},"outcome":"accepted",)"
         R"("attempts":2,"blocks_done":12,"blocks_total":49,"fraction":0.244898})"
     );
@@ -198,6 +198,27 @@ TEST(Problems, AreAsTheStandardWritesThem) {
         "\"status\":422,\"detail\":\"no\xEF\xBF\xBD\",\"errors\":[{\"pointer\":\"/a\","
         "\"detail\":\"b\"}]}"
     );
+}
+
+TEST(Tally, ComesBackFromItsTextAndNothingElseDoes) {
+    const SearchTally tally = {{7, 0, 4'294'967'295, 2}, 3, 1'000'000'000'000};
+    EXPECT_EQ(encode_tally(tally), "[7,0,4294967295,2,3,1000000000000]");
+    EXPECT_EQ(decode_tally(encode_tally(tally)), tally);
+    EXPECT_EQ(decode_tally("[0,0,0,0,0,0]"), SearchTally());
+    for (const char* text :
+         {"",
+          "[",
+          "{}",
+          "7",
+          "[7,0,0,2,3]",
+          "[7,0,0,2,3,4,5]",
+          "[7,0,-1,2,3,4]",
+          "[4294967296,0,0,0,0,0]",
+          "[0,0,0,0,4294967296,0]",
+          "[1.5,0,0,0,0,0]",
+          "[\"1\",0,0,0,0,0]"}) {
+        EXPECT_FALSE(decode_tally(text)) << text;
+    }
 }
 
 }  // namespace

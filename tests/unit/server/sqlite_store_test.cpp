@@ -121,10 +121,30 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         EXPECT_EQ(claimed->version_base, 0U);
         EXPECT_FALSE(claimed->checkpoint);
         Progress progress = progress_of(2);
-        progress.checkpoint = JobCheckpoint{0, 2, 2, "labels"};
+        progress.checkpoint = JobCheckpoint{0, 2, "2", "labels"};
         value(append(*store, claimed->lease, {block_event(1)}, progress));
     }
     EXPECT_EQ(value(value(open())->checkpoint("b"))->seq, 3U);
+}
+
+TEST_F(SqliteStoreFiles, TablesOfTheSecondFormKeepTheirCheckpoints) {
+    {
+        const auto store = value(open());
+        value(store->submit(new_job("a"), kNoLimit));
+        Progress progress = progress_of(1);
+        progress.checkpoint = JobCheckpoint{0, 1, "1", "labels"};
+        value(append(*store, value(store->claim(kNow))->lease, {block_event(0)}, progress));
+    }
+    execute(
+        "ALTER TABLE job DROP COLUMN version_base; ALTER TABLE checkpoint DROP COLUMN tally;"
+        "ALTER TABLE checkpoint ADD COLUMN blocks_accepted INTEGER NOT NULL DEFAULT 1;"
+        "UPDATE meta SET value = 2 WHERE key = 'schema'"
+    );
+    const auto claimed = value(value(open())->claim(kNow));
+    ASSERT_TRUE(claimed && claimed->checkpoint);
+    EXPECT_EQ(claimed->checkpoint->labels, "labels");
+    EXPECT_EQ(claimed->checkpoint->tally, "");  // older solvers counted in another way
+    EXPECT_EQ(claimed->version_base, 0U);
 }
 
 TEST_F(SqliteStoreFiles, ADatabaseThatIsNoneIsRefused) {

@@ -49,7 +49,8 @@ Told run_script(SqliteStore& store) {
     told.claimed = (*claimed)->lease;
     for (std::uint32_t block = 0; block < 3; ++block) {
         Progress progress = progress_of(block + 1);
-        progress.checkpoint = JobCheckpoint{0, block + 1, block + 1, random_bytes(5000, block)};
+        progress.checkpoint =
+            JobCheckpoint{0, block + 1, std::to_string(block + 1), random_bytes(5000, block)};
         const auto first = append(store, *told.claimed, {block_event(block)}, progress);
         if (told.went_well(first)) {
             told.head = *first;

@@ -419,7 +419,7 @@ TEST_P(JobContract, WhatExpiresLeavesNoFile) {
 TEST_P(JobContract, UnfinishedJobsDoNotExpire) {
     Claim claimed = submit_and_claim("a");
     Progress progress = progress_of(1);
-    progress.checkpoint = JobCheckpoint{0, 1, 1, "labels"};
+    progress.checkpoint = JobCheckpoint{0, 1, "1", "labels"};
     value(append(jobs(), claimed.lease, {block_event(0)}, progress));
     jobs().expire(std::numeric_limits<proto::UnixMillis>::max());
     EXPECT_TRUE(value(jobs().checkpoint("a")));
@@ -477,7 +477,7 @@ TEST_P(JobContract, HardTextSurvives) {
     EXPECT_EQ(claimed->deadline_seconds, job.deadline_seconds);
     Progress progress = progress_of(1);
     progress.solver_version = hard_text("version");
-    progress.checkpoint = JobCheckpoint{0, 1, 1, random_bytes(100'000, 1)};
+    progress.checkpoint = JobCheckpoint{0, 1, hard_text("tally"), random_bytes(100'000, 1)};
     const NewEvent event{hard_text("type"), hard_text("fields"), -1};
     value(append(jobs(), claimed->lease, {event}, progress));
     EXPECT_EQ(value(jobs().checkpoint(job.id))->labels, progress.checkpoint->labels);

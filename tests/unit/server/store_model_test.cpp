@@ -37,8 +37,8 @@ std::string text_of(const proto::Job& job) {
 std::string text_of(const std::optional<JobCheckpoint>& checkpoint) {
     std::ostringstream text;
     if (checkpoint) {
-        text << checkpoint->seq << ' ' << checkpoint->blocks_done << ' '
-             << checkpoint->blocks_accepted << ' ' << checkpoint->labels;
+        text << checkpoint->seq << ' ' << checkpoint->blocks_done << ' ' << checkpoint->tally << ' '
+             << checkpoint->labels;
     }
     return text.str();
 }
@@ -218,7 +218,7 @@ class Comparison {
         progress.solver_version = "v" + std::to_string(below(3));
         if (below(3) == 0) {
             progress.checkpoint =
-                JobCheckpoint{0, progress.blocks_done, 1, "labels" + std::to_string(below(1000))};
+                JobCheckpoint{0, progress.blocks_done, "1", "labels" + std::to_string(below(1000))};
         }
         EXPECT_EQ(
             answer_of(server::append(store_.jobs(), lease, events, progress)),

@@ -14,7 +14,8 @@ namespace {
 Progress with_checkpoint(std::uint32_t blocks_done, std::string labels) {
     Progress progress = progress_of(blocks_done);
     // The seq that the caller gives is not looked at.
-    progress.checkpoint = JobCheckpoint{999, blocks_done, blocks_done / 2, std::move(labels)};
+    progress.checkpoint =
+        JobCheckpoint{999, blocks_done, std::to_string(blocks_done / 2), std::move(labels)};
     return progress;
 }
 
@@ -24,7 +25,7 @@ void expect_checkpoint(
     ASSERT_TRUE(checkpoint);
     EXPECT_EQ(checkpoint->seq, expected.seq);
     EXPECT_EQ(checkpoint->blocks_done, expected.blocks_done);
-    EXPECT_EQ(checkpoint->blocks_accepted, expected.blocks_accepted);
+    EXPECT_EQ(checkpoint->tally, expected.tally);
     EXPECT_EQ(checkpoint->labels, expected.labels);
 }
 
@@ -126,15 +127,15 @@ TEST_P(ProgressContract, TheCheckpointStandsForTheLastEventOfItsAppend) {
     EXPECT_FALSE(value(jobs().checkpoint("a")));
     value(append(jobs(), claimed.lease, {block_event(0), block_event(1)}, with_checkpoint(2, "two"))
     );
-    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, 1, "two"});
+    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, "1", "two"});
     // One without keeps it.
     value(append(jobs(), claimed.lease, {block_event(2)}, progress_of(3)));
-    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, 1, "two"});
+    expect_checkpoint(value(jobs().checkpoint("a")), {3, 2, "1", "two"});
     value(append(jobs(), claimed.lease, {block_event(3)}, with_checkpoint(4, "four")));
-    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, 2, "four"});
+    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, "2", "four"});
     // With no event it stands for what is there.
     value(append(jobs(), claimed.lease, {}, with_checkpoint(4, "")));
-    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, 2, ""});
+    expect_checkpoint(value(jobs().checkpoint("a")), {5, 4, "2", ""});
 }
 
 TEST_P(ProgressContract, AClaimGivesTheLatestCheckpointBack) {
@@ -146,12 +147,12 @@ TEST_P(ProgressContract, AClaimGivesTheLatestCheckpointBack) {
     between_steps();
     const auto released = claim();
     ASSERT_TRUE(released);
-    expect_checkpoint(released->checkpoint, {3, 2, 1, labels});
+    expect_checkpoint(released->checkpoint, {3, 2, "1", labels});
     value(append(jobs(), released->lease, {block_event(2)}, progress_of(3)));
     reopen();
     const auto crashed = claim();
     ASSERT_TRUE(crashed);
-    expect_checkpoint(crashed->checkpoint, {3, 2, 1, labels});
+    expect_checkpoint(crashed->checkpoint, {3, 2, "1", labels});
     EXPECT_EQ(crashed->job.blocks_done, 3U);
 }
 
@@ -178,7 +179,7 @@ TEST_P(ProgressContract, AnotherSolverVersionDropsTheCheckpointAndTellsWhereItBe
     progress = with_checkpoint(1, "newer");
     progress.solver_version = "v3";
     value(append(jobs(), third->lease, {block_event(0)}, progress));
-    expect_checkpoint(value(jobs().checkpoint("a")), {4, 1, 0, "newer"});
+    expect_checkpoint(value(jobs().checkpoint("a")), {4, 1, "0", "newer"});
     // The same version changes nothing.
     progress = progress_of(2);
     progress.solver_version = "v3";
@@ -196,7 +197,7 @@ TEST_P(ProgressContract, AnOldHolderWritesNoCheckpoint) {
         error_of(append(jobs(), old.lease, {block_event(1)}, with_checkpoint(2, "late"))),
         StoreErrorCode::kLeaseLost
     );
-    expect_checkpoint(value(jobs().checkpoint("a")), {2, 1, 0, "good"});
+    expect_checkpoint(value(jobs().checkpoint("a")), {2, 1, "0", "good"});
 }
 
 TEST_P(ProgressContract, TheCheckpointGoesWhenTheJobSucceeds) {

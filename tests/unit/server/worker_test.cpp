@@ -84,8 +84,10 @@ class WorkerOnAnEarlierLog : public testing::Test {
         }
         progress.blocks_done = static_cast<std::uint32_t>(blocks.size());
         if (labels) {
+            SearchTally tally;
+            tally.solved_by[0] = progress.blocks_done;
             progress.checkpoint =
-                JobCheckpoint{0, progress.blocks_done, progress.blocks_done, *labels};
+                JobCheckpoint{0, progress.blocks_done, proto::encode_tally(tally), *labels};
         }
         value(append(store_.jobs(), begun.lease, events, progress));
         value(store_.jobs().release(begun.lease, 0));

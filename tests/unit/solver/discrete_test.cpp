@@ -74,7 +74,9 @@ TEST(Synthesis, ReportsBlocksInOrderAndEveryStateIsConsistent) {
     }
     EXPECT_EQ(observer.models.back(), model->labels);
     EXPECT_GT(model->stats.changed, 0.0);
-    EXPECT_EQ(model->stats.blocks_accepted + model->stats.blocks_reverted, observer.reports.size());
+    EXPECT_EQ(
+        model->stats.blocks.accepted() + model->stats.blocks.reverted, observer.reports.size()
+    );
 }
 
 TEST(Synthesis, GoesOnFromACheckpointAfterAnyBlockToTheSameEnd) {
@@ -85,16 +87,13 @@ TEST(Synthesis, GoesOnFromACheckpointAfterAnyBlockToTheSameEnd) {
     ASSERT_TRUE(model);
     for (std::size_t block = 0; block < whole.reports.size(); ++block) {
         const Checkpoint checkpoint = {
-            whole.reports[block].index + 1,
-            whole.reports[block].blocks_accepted,
-            whole.models[block]};
+            whole.reports[block].index + 1, whole.reports[block].tally, whole.models[block]};
         RecordingObserver rest;
         const auto resumed = synthesise(example, parameters, 5, rest, {}, &checkpoint);
         ASSERT_TRUE(resumed);
         EXPECT_EQ(rest.initial_model, checkpoint.labels);
         EXPECT_EQ(resumed->labels, model->labels);
-        EXPECT_EQ(resumed->stats.blocks_accepted, model->stats.blocks_accepted);
-        EXPECT_EQ(resumed->stats.blocks_reverted, model->stats.blocks_reverted);
+        EXPECT_EQ(resumed->stats.blocks, model->stats.blocks);
         EXPECT_EQ(resumed->stats.changed, model->stats.changed);
         ASSERT_EQ(rest.reports.size(), whole.reports.size() - block - 1);
         if (!rest.reports.empty()) {
@@ -110,7 +109,7 @@ TEST(Synthesis, GoesOnFromTheOneBlockOfAWhole) {
     RecordingObserver whole;
     const auto model = synthesise(example, parameters, 5, whole, {});
     ASSERT_TRUE(model);
-    const Checkpoint checkpoint = {1, 1, model->labels};
+    const Checkpoint checkpoint = {1, whole.reports.front().tally, model->labels};
     RecordingObserver rest;
     const auto resumed = synthesise(example, parameters, 5, rest, {}, &checkpoint);
     ASSERT_TRUE(resumed);
@@ -180,7 +179,7 @@ TEST(Synthesis, WeightsMoveTheSharesAndZeroRemoves) {
     EXPECT_GT(count_pillars(100), 2 * count_pillars(0.02));
 }
 
-TEST(Synthesis, StartsFromATileWhereNoPieceIsItsOwnNeighbour) {
+TEST(Synthesis, MakesAModelWhereNoPieceIsItsOwnNeighbour) {
     // A checkerboard: the only models are checkerboards.
     const Example example = make_example({3, 1, 3}, {0, 1, 0, 1, 0, 1, 0, 1, 0}, 2);
     RecordingObserver observer;
@@ -307,7 +306,7 @@ TEST(BuiltIn, EachGivesLivelyModelsWithFewRevertedBlocks) {
             const auto model = synthesise(*example, sized(*example, size), seed, observer, {});
             ASSERT_TRUE(model) << example->name << ": " << model.error().message;
             EXPECT_EQ(find_inconsistency(*example, size, model->labels), std::nullopt);
-            EXPECT_LE(model->stats.blocks_reverted * 10, observer.total) << example->name;
+            EXPECT_LE(model->stats.blocks.reverted * 10, observer.total) << example->name;
             EXPECT_GE(model->stats.changed, 0.08) << example->name;
         }
     }

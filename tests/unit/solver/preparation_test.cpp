@@ -1,11 +1,14 @@
 #include "solver/discrete/preparation.h"
 
+#include "solver/discrete/initial_model.h"
 #include "solver/discrete/synthesis.h"
 #include "solver/examples/built_in.h"
+#include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -70,6 +73,55 @@ TEST(Preparation, ServesSeveralThreadsAtOnce) {
     }
     for (std::size_t seed = 0; seed < made.size(); ++seed) {
         EXPECT_EQ(made[seed], labels_alone(parameters, seed));
+    }
+}
+
+// Two pieces that alternate along x and z, neither beside itself.
+std::shared_ptr<const Example> chequers() {
+    return std::make_shared<const Example>(testing::make_example({2, 1, 2}, {0, 1, 1, 0}, 2));
+}
+
+InitialModel initial_model(const std::shared_ptr<const Example>& example, const GridSize& size) {
+    const auto preparation = Preparation::make(example, sized(*example, size)).value();
+    const auto search = preparation->take_search();
+    return find_initial_model(*example, preparation->problem(), *search, true, 1, {}).value();
+}
+
+TEST(InitialModel, OfAnExampleWithoutGroundIsSearchedOrWhenLargeATile) {
+    const auto example = chequers();
+    const InitialModel small = initial_model(example, {30, 1, 20});
+    EXPECT_TRUE(small.is_searched);
+    EXPECT_FALSE(testing::find_inconsistency(*example, {30, 1, 20}, small.labels));
+    const InitialModel large = initial_model(example, {400, 1, 401});
+    EXPECT_FALSE(large.is_searched);
+    EXPECT_FALSE(testing::find_inconsistency(*example, {400, 1, 401}, large.labels));
+}
+
+// A floor of two pieces that alternate, air above: air everywhere is a model, and no block of it
+// can become anything else, since beside air there is only air.
+TEST(InitialModel, OfAirThatNoBlockCanChangeIsNotTaken) {
+    auto example = std::make_shared<Example>(
+        testing::make_example({2, 3, 2}, {0, 1, 1, 0, 2, 2, 2, 2, 2, 2, 2, 2}, 3)
+    );
+    example->empty = 2;
+    const Parameters parameters = sized(*example, {20, 3, 20});
+    const auto preparation = Preparation::make(example, parameters).value();
+    EXPECT_FALSE(preparation->plain_model());
+    EXPECT_TRUE(preparation->is_plain_model_rigid());
+    const std::vector<Label> labels = labels_of(*preparation, 4);
+    EXPECT_FALSE(testing::find_inconsistency(*example, {20, 3, 20}, labels));
+    EXPECT_GT(std::count(labels.begin(), labels.end(), Label{0}), 0);
+}
+
+TEST(InitialModel, OfGroundIsPlainAndDependsOnNoSeed) {
+    const auto preparation = Preparation::make(castle(), sized(*castle(), {12, 9, 12})).value();
+    const auto search = preparation->take_search();
+    ASSERT_TRUE(preparation->plain_model());
+    for (const std::uint64_t seed : {1U, 2U}) {
+        const auto found =
+            find_initial_model(*castle(), preparation->problem(), *search, true, seed, {});
+        EXPECT_FALSE(found->is_searched);
+        EXPECT_EQ(found->labels, preparation->plain_model());
     }
 }
 
