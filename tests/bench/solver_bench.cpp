@@ -2,7 +2,7 @@
 // example, a size and a boundary; "median" and "max" are over the seeds after it, which go on from
 // what the first one prepared.
 //
-//   solver_bench [--data DIR] [--seeds N] [--only NAME]
+//   solver_bench [--data DIR] [--seeds N] [--only NAME] [--large yes]
 //
 // DIR holds label grids in the example format (castle.json, ...); built-in examples are timed in
 // any case. NAME is that of an example as printed in the table.
@@ -123,6 +123,7 @@ ExamplePointer load(const std::filesystem::path& path) {
 int main(int argc, char** argv) {
     std::string data;
     std::string only;
+    bool is_large = false;
     int seeds = 20;
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string option = argv[i];
@@ -130,6 +131,8 @@ int main(int argc, char** argv) {
             data = argv[i + 1];
         } else if (option == "--seeds") {
             seeds = std::max(1, std::atoi(argv[i + 1]));
+        } else if (option == "--large") {
+            is_large = true;
         } else if (option == "--only") {
             only = argv[i + 1];
         }
@@ -160,7 +163,11 @@ int main(int argc, char** argv) {
             return 1;
         }
         print(label.c_str(), example, {40, 10, 40}, true, seeds);
-        print(label.c_str(), example, {40, 10, 40}, false, std::min(seeds, 5));
+        print(label.c_str(), example, {40, 10, 40}, false, seeds);
+        print(label.c_str(), example, {100, 10, 100}, true, std::min(seeds, 5));
+        if (is_large) {
+            print(label.c_str(), example, {1000, 10, 1000}, true, 1);
+        }
     }
     return 0;
 }
