@@ -13,6 +13,7 @@
 #include "solver/mesh/glb_writer.h"
 #include "solver/registry/task.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <random>
@@ -101,7 +102,13 @@ Outcome<Finished> solve(const proto::JobRequest& request, ProgressDisplay& displ
     ShowProgress observer(display);
     const Watchdog watchdog(request.deadline_seconds);
     Preparations preparations;
-    auto finished = run(request.task, preparations, observer, watchdog.token());
+    auto finished =
+        run(request.task,
+            preparations,
+            observer,
+            watchdog.token(),
+            nullptr,
+            std::max(1U, std::thread::hardware_concurrency()));
     display.finish();
     if (is_interrupted()) {
         return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});

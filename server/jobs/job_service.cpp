@@ -88,7 +88,10 @@ void JobService::work(const std::stop_token& stop) {
         expire_now_and_then();
         const auto claim = jobs_.claim(proto::now_millis());
         if (claim && *claim) {
-            run_claim(context, **claim);
+            // A job that is alone takes the workers that have nothing to do to help.
+            const std::size_t in_hand = ++jobs_in_hand_;
+            run_claim(context, **claim, static_cast<std::uint32_t>(config_.workers / in_hand));
+            --jobs_in_hand_;
             continue;
         }
         std::unique_lock lock(mutex_);

@@ -129,6 +129,7 @@ class JobService {
     std::mutex mutex_;
     std::condition_variable_any queued_;
     std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news
+    std::atomic<std::size_t> jobs_in_hand_ = 0;
     std::vector<std::jthread> workers_;
 };
 

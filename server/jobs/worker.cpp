@@ -22,8 +22,11 @@ using Clock = std::chrono::steady_clock;
 // One claim in hand.
 class ClaimRun {
   public:
-    ClaimRun(const WorkerContext& context, const Claim& claim)
-        : context_(context), claim_(claim), running_(context.running, claim.lease.job_id) {}
+    ClaimRun(const WorkerContext& context, const Claim& claim, std::uint32_t threads)
+        : context_(context),
+          claim_(claim),
+          threads_(threads),
+          running_(context.running, claim.lease.job_id) {}
 
     void run() {
         if (claim_.fruitless_claims >= kFruitlessClaimsMax) {
@@ -73,8 +76,9 @@ class ClaimRun {
         );
         const auto begun = Clock::now();
         const Checkpoint* from = earlier.checkpoint ? &*earlier.checkpoint : nullptr;
-        auto finished =
-            modelsynth::run(task, context_.preparations, observer, running_.token(), from);
+        auto finished = modelsynth::run(
+            task, context_.preparations, observer, running_.token(), from, threads_
+        );
         const std::chrono::duration<double> solving = Clock::now() - begun;
         if (observer.diverged()) {
             context_.log->error(
@@ -203,15 +207,16 @@ class ClaimRun {
 
     const WorkerContext& context_;
     const Claim& claim_;
+    std::uint32_t threads_;
     RunningJobs::Entry running_;
     std::string example_digest_;  // of an uploaded example's text
 };
 
 }  // namespace
 
-void run_claim(const WorkerContext& context, const Claim& claim) {
+void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t threads) {
     try {
-        ClaimRun(context, claim).run();
+        ClaimRun(context, claim, threads).run();
     } catch (const std::exception& error) {
         context.log->error("job threw job={} what=\"{}\"", claim.lease.job_id, error.what());
         Outcome outcome;

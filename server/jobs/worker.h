@@ -10,6 +10,7 @@
 
 #include <spdlog/logger.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -38,7 +39,8 @@ struct WorkerContext {
 // Runs one claimed job to its end, or until it is told to stop: solves, logs each block, keeps
 // the artifacts, ends the job. A job that was begun before goes on from its checkpoint; since
 // solving is deterministic nothing is appended until it passes what the log already holds, and
-// what is solved again must equal what was logged. Throws nothing.
-void run_claim(const WorkerContext& context, const Claim& claim);
+// what is solved again must equal what was logged. `threads`: how many may solve, this one
+// included; they change no result. Throws nothing.
+void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t threads = 1);
 
 }  // namespace modelsynth::server

@@ -1,19 +1,87 @@
 #include "solver/discrete/synthesis.h"
 
+#include "solver/core/block_queue.h"
 #include "solver/core/block_schedule.h"
 #include "solver/discrete/initial_model.h"
 
-#include <algorithm>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace modelsynth::discrete {
 
 namespace {
 
+// Blocks that wait to be reported while others are solved, and the most blocks whose dependencies
+// are worth their memory.
+constexpr std::uint32_t kRunAheadMax = 512;
+constexpr std::size_t kParallelBlocksMax = 50'000;
+
 Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
+
+// Modifies blocks of one run; one per thread.
+class BlockSolver {
+  public:
+    BlockSolver(Preparation& preparation, std::uint64_t seed, const std::stop_token& stop)
+        : preparation_(preparation), seed_(seed), stop_(stop), search_(preparation.take_search()) {}
+
+    BlockSolver(const BlockSolver&) = delete;
+    BlockSolver& operator=(const BlockSolver&) = delete;
+
+    ~BlockSolver() { preparation_.give_back(std::move(search_)); }
+
+    [[nodiscard]] Preparation::Search& search() { return *search_; }
+
+    BlockResult modify(
+        std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
+    ) {
+        if (stop_.stop_requested()) {
+            return {BlockOutcome::kStopped};
+        }
+        const Problem& problem = preparation_.problem();
+        const GridPart part(problem.size, problem.periodic, block);
+        const GridSize shape = block.size();
+        if (shape != scan_shape_) {
+            scan_ = column_order(shape);
+            scan_shape_ = shape;
+        }
+        return search_->modify(
+            part,
+            labels,
+            {attempts, preparation_.parameters().order, scan_},
+            {seed_, index, 0, 0},
+            stop_
+        );
+    }
+
+  private:
+    Preparation& preparation_;
+    std::uint64_t seed_;
+    const std::stop_token& stop_;
+    std::unique_ptr<Preparation::Search> search_;
+    std::vector<Site> scan_;
+    GridSize scan_shape_;
+};
+
+void copy_out(
+    const GridSize& size, std::span<const Label> labels, const Box& box, std::vector<Label>& copy
+) {
+    copy.clear();
+    for_each_cell(box, [&](const Cell& cell) { copy.push_back(labels[size.index(cell)]); });
+}
+
+void copy_in(
+    const GridSize& size, std::span<const Label> copy, const Box& box, std::span<Label> labels
+) {
+    std::size_t i = 0;
+    for_each_cell(box, [&](const Cell& cell) { labels[size.index(cell)] = copy[i++]; });
+}
 
 // One run; the state that its steps share.
 class Run {
@@ -27,14 +95,11 @@ class Run {
           seed_(seed),
           observer_(observer),
           stop_(stop),
-          search_(preparation.take_search()) {}
+          solver_(preparation, seed, stop) {}
 
-    Run(const Run&) = delete;
-    Run& operator=(const Run&) = delete;
-
-    ~Run() { preparation_.give_back(std::move(search_)); }
-
-    Result<Synthesis> in_blocks(const Blocks& blocks, const Checkpoint* from) {
+    Result<Synthesis> in_blocks(
+        const Blocks& blocks, const Checkpoint* from, std::uint32_t threads
+    ) {
         auto schedule = schedule_blocks(problem_.size, blocks.layout, kBlockCountMax);
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
@@ -44,7 +109,7 @@ class Run {
             found = find_initial_model(
                 preparation_.example(),
                 problem_,
-                *search_,
+                solver_.search(),
                 !preparation_.is_plain_model_rigid(),
                 seed_,
                 stop_
@@ -61,16 +126,10 @@ class Run {
         }
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
         observer_.on_start(blocks_total_, labels_);
-        for (const Box& block : std::span(*schedule).subspan(block_index_)) {
-            const BlockResult result = modify(block, blocks.attempts);
-            if (result.outcome == BlockOutcome::kStopped) {
-                return tl::unexpected(cancelled());
-            }
-            check(
-                result.outcome != BlockOutcome::kImpossible,
-                "a block of a consistent model was found impossible"
-            );
-            report(block, result);
+        const bool in_parallel = threads > 1 && schedule->size() <= kParallelBlocksMax;
+        if (!(in_parallel ? modify_in_parallel(*schedule, blocks.attempts, threads)
+                          : modify_in_turn(*schedule, blocks.attempts))) {
+            return tl::unexpected(cancelled());
         }
         if (found->is_searched) {
             return finish(1);
@@ -92,7 +151,7 @@ class Run {
         }
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
-        const BlockResult result = modify(whole, kWholeAttempts);
+        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -125,22 +184,98 @@ class Run {
         stats_.blocks = from.tally;
     }
 
-    BlockResult modify(const Box& block, std::uint32_t attempts) {
-        if (stop_.stop_requested()) {
-            return {BlockOutcome::kStopped};
+    // False when it was stopped; so are those below.
+    bool modify_in_turn(std::span<const Box> schedule, std::uint32_t attempts) {
+        for (const Box& block : schedule.subspan(block_index_)) {
+            const BlockResult result = solver_.modify(labels_, block, block_index_, attempts);
+            if (result.outcome == BlockOutcome::kStopped) {
+                return false;
+            }
+            check_possible(result);
+            report(block, result);
         }
-        const GridPart part(problem_.size, problem_.periodic, block);
-        const GridSize shape = block.size();
-        if (shape != scan_shape_) {
-            scan_ = column_order(shape);
-            scan_shape_ = shape;
+        return true;
+    }
+
+    // Blocks that do not touch are modified at the same time, in a copy of the model that is ahead
+    // of what was reported.
+    bool modify_in_parallel(
+        std::span<const Box> schedule, std::uint32_t attempts, std::uint32_t threads
+    ) {
+        struct Solved {
+            BlockResult result;
+            std::vector<Label> labels;  // of an accepted block
+        };
+
+        const BlockDependencies dependencies =
+            find_dependencies(problem_.size, problem_.periodic, schedule, block_index_);
+        BlockQueue queue(dependencies, block_index_, kRunAheadMax);
+        std::vector<Label> ahead = labels_;
+        // One more than run ahead: the oldest is being reported while the newest is solved.
+        std::vector<Solved> solved(kRunAheadMax + 1);
+        const auto solve = [&](BlockSolver& solver, std::uint32_t block) {
+            Solved& slot = solved[block % solved.size()];
+            slot.result = solver.modify(ahead, schedule[block], block, attempts);
+            if (slot.result.outcome == BlockOutcome::kStopped) {
+                queue.stop();
+                return;
+            }
+            check_possible(slot.result);
+            if (slot.result.outcome == BlockOutcome::kAccepted) {
+                copy_out(problem_.size, ahead, schedule[block], slot.labels);
+            }
+            queue.finish(block);
+        };
+        std::exception_ptr fault;
+        std::mutex fault_mutex;
+        const auto help = [&] {
+            try {
+                BlockSolver solver(preparation_, seed_, stop_);
+                while (const auto block = queue.take()) {
+                    solve(solver, *block);
+                }
+            } catch (...) {
+                const std::lock_guard lock(fault_mutex);
+                fault = std::current_exception();
+                queue.stop();
+            }
+        };
+        {
+            std::vector<std::jthread> helpers;
+            // However this ends, helpers are told before they are waited for.
+            const std::unique_ptr<BlockQueue, void (*)(BlockQueue*)> at_end(
+                &queue, [](BlockQueue* it) { it->stop(); }
+            );
+            for (std::uint32_t i = 1; i < threads; ++i) {
+                try {
+                    helpers.emplace_back(help);
+                } catch (const std::system_error&) {
+                    break;  // no more threads can be had
+                }
+            }
+            for (auto step = queue.next_step(); step.kind != BlockQueue::Step::Kind::kEnd;
+                 step = queue.next_step()) {
+                if (step.kind == BlockQueue::Step::Kind::kSolve) {
+                    solve(solver_, step.block);
+                    continue;
+                }
+                const Solved& slot = solved[step.block % solved.size()];
+                if (slot.result.outcome == BlockOutcome::kAccepted) {
+                    copy_in(problem_.size, slot.labels, schedule[step.block], labels_);
+                }
+                report(schedule[step.block], slot.result);
+            }
         }
-        return search_->modify(
-            part,
-            std::span<Label>(labels_),
-            {attempts, preparation_.parameters().order, scan_},
-            {seed_, block_index_, 0, 0},
-            stop_
+        if (fault) {
+            std::rethrow_exception(fault);
+        }
+        return block_index_ == schedule.size();
+    }
+
+    static void check_possible(const BlockResult& result) {
+        check(
+            result.outcome != BlockOutcome::kImpossible,
+            "a block of a consistent model was found impossible"
         );
     }
 
@@ -165,10 +300,8 @@ class Run {
     std::uint64_t seed_;
     Observer& observer_;
     const std::stop_token& stop_;
-    std::unique_ptr<Preparation::Search> search_;
+    BlockSolver solver_;
     std::vector<Label> labels_;
-    std::vector<Site> scan_;
-    GridSize scan_shape_;
     std::uint32_t block_index_ = 0;
     std::uint32_t blocks_total_ = 0;
     SynthesisStats stats_;
@@ -181,11 +314,12 @@ Result<Synthesis> synthesise(
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from
+    const Checkpoint* from,
+    std::uint32_t threads
 ) {
     const auto& blocks = *preparation.parameters().blocks;
     Run run(preparation, seed, observer, stop);
-    return blocks ? run.in_blocks(*blocks, from) : run.at_once(from);
+    return blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
 }
 
 Result<Synthesis> synthesise(
@@ -194,14 +328,15 @@ Result<Synthesis> synthesise(
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from
+    const Checkpoint* from,
+    std::uint32_t threads
 ) {
     const std::shared_ptr<const Example> not_owned(std::shared_ptr<const Example>(), &example);
     const auto preparation = Preparation::make(not_owned, parameters);
     if (!preparation) {
         return tl::unexpected(preparation.error());
     }
-    return synthesise(**preparation, seed, observer, stop, from);
+    return synthesise(**preparation, seed, observer, stop, from, threads);
 }
 
 }  // namespace modelsynth::discrete

@@ -32,6 +32,8 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
 // With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;
 // the result is that of a run without.
+// With several threads, blocks that do not touch are modified at the same time; the observer is
+// called on this one alone, in order, and nothing it sees is different.
 // Ensures:  equal arguments give equal labels and equal reports, on any machine.
 // Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
 //           block and within one propagation.
@@ -41,7 +43,8 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from = nullptr
+    const Checkpoint* from = nullptr,
+    std::uint32_t threads = 1
 );
 
 // The same with a preparation of its own; see Preparation::make() for what it requires.
@@ -51,7 +54,8 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from = nullptr
+    const Checkpoint* from = nullptr,
+    std::uint32_t threads = 1
 );
 
 }  // namespace modelsynth::discrete

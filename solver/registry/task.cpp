@@ -62,7 +62,8 @@ Result<Finished> run(
     Preparations& preparations,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from
+    const Checkpoint* from,
+    std::uint32_t threads
 ) {
     const auto& example = std::get<std::shared_ptr<const discrete::Example>>(task.example);
     const auto preparation =
@@ -70,7 +71,7 @@ Result<Finished> run(
     if (!preparation) {
         return tl::unexpected(preparation.error());
     }
-    auto made = discrete::synthesise(**preparation, task.seed, observer, stop, from);
+    auto made = discrete::synthesise(**preparation, task.seed, observer, stop, from, threads);
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }

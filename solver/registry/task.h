@@ -70,13 +70,14 @@ struct Preparations {
 };
 
 // Runs the synthesis, from the start or from a checkpoint of the same task; see the solver's own
-// header for what it ensures and how it fails.
+// header for what it ensures and how it fails. The number of threads changes no result.
 [[nodiscard]] Result<Finished> run(
     const Task& task,
     Preparations& preparations,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from = nullptr
+    const Checkpoint* from = nullptr,
+    std::uint32_t threads = 1
 );
 
 // A region of the model as a scene, in the whole model's frame.

@@ -1,8 +1,8 @@
-// Times discrete synthesis and prints a table, one thread. "first" is the first request for an
+// Times discrete synthesis and prints a table. "first" is the first request for an
 // example, a size and a boundary; "median" and "max" are over the seeds after it, which go on from
 // what the first one prepared.
 //
-//   solver_bench [--data DIR] [--seeds N] [--only NAME] [--large yes]
+//   solver_bench [--data DIR] [--seeds N] [--only NAME] [--large yes] [--threads N]
 //
 // DIR holds label grids in the example format (castle.json, ...); built-in examples are timed in
 // any case. NAME is that of an example as printed in the table.
@@ -35,6 +35,8 @@ class Silent final : public modelsynth::Observer {
     void on_block(const modelsynth::BlockReport&) override {}
 };
 
+std::uint32_t threads = 1;
+
 struct Times {
     double first = 0;
     std::vector<double> milliseconds;
@@ -61,8 +63,9 @@ Times measure(const ExamplePointer& example, const GridSize& size, bool in_block
         if (preparation == nullptr) {
             preparation = discrete::Preparation::make(example, parameters).value();
         }
-        const auto model =
-            discrete::synthesise(*preparation, static_cast<std::uint64_t>(seed), observer, {});
+        const auto model = discrete::synthesise(
+            *preparation, static_cast<std::uint64_t>(seed), observer, {}, nullptr, threads
+        );
         const std::chrono::duration<double, std::milli> taken =
             std::chrono::steady_clock::now() - begun;
         if (seed < 0) {
@@ -131,6 +134,8 @@ int main(int argc, char** argv) {
             data = argv[i + 1];
         } else if (option == "--seeds") {
             seeds = std::max(1, std::atoi(argv[i + 1]));
+        } else if (option == "--threads") {
+            threads = static_cast<std::uint32_t>(std::clamp(std::atoi(argv[i + 1]), 1, 64));
         } else if (option == "--large") {
             is_large = true;
         } else if (option == "--only") {

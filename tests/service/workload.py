@@ -1,5 +1,6 @@
 """Examples of the tests' own, sent inline, so that no test depends on what is built in."""
 
+import os
 import random
 
 # Infallible and quick: every block is accepted.
@@ -44,10 +45,11 @@ TILES = _wang_tiles(20, 4, 5)
 TILES_JOB = {"example": TILES, "size": (60, 1, 60), "parameters": {
     "weights": "uniform", "blocks": {"size": [8, 1, 8], "overlap": 0, "attempts": 1}}}
 
-# A job in the middle of which there is time to do something: thousands of blocks, a second or
-# more. Half of it is a passage of a few hundred milliseconds.
+# A job in the middle of which there is time to do something: thousands of blocks, a second or more.
+# Half of it is a passage of a few hundred milliseconds. A sanitizer needs fewer blocks for that.
+STEADY_PASSES = 9 if os.environ.get("MODELSYNTH_SANITIZED") else 30
 STEADY_JOB = {"example": YARD, "size": (100, 6, 100), "parameters": {
-    "weights": "uniform", "blocks": {"passes": 9}}}
+    "weights": "uniform", "blocks": {"passes": STEADY_PASSES}}}
 
 # As long, but no cell is made twice in different passes: what is lost of it stays lost.
 SWEEP_JOB = {"example": YARD, "size": (240, 6, 240), "parameters": {"weights": "uniform"}}

@@ -125,6 +125,93 @@ TEST(InitialModel, OfGroundIsPlainAndDependsOnNoSeed) {
     }
 }
 
+TEST(ParallelSynthesis, IsTheSameOnAnyNumberOfThreadsToTheLastReport) {
+    Parameters parameters = sized(*castle(), {43, 9, 38});
+    (*parameters.blocks)->layout.passes = 2;
+    const auto preparation = Preparation::make(castle(), parameters).value();
+    RecordingObserver alone;
+    const auto expected = synthesise(*preparation, 9, alone, {}).value();
+    for (std::uint32_t threads = 2; threads <= 8; ++threads) {
+        RecordingObserver observer;
+        const auto made = synthesise(*preparation, 9, observer, {}, nullptr, threads).value();
+        EXPECT_EQ(made.labels, expected.labels) << threads;
+        EXPECT_EQ(made.stats.blocks, expected.stats.blocks) << threads;
+        EXPECT_EQ(made.stats.changed, expected.stats.changed) << threads;
+        EXPECT_EQ(observer.models, alone.models) << threads;
+        ASSERT_EQ(observer.reports.size(), alone.reports.size());
+        for (std::size_t i = 0; i < alone.reports.size(); ++i) {
+            EXPECT_EQ(observer.reports[i].index, i);
+            EXPECT_EQ(observer.reports[i].region, alone.reports[i].region);
+            EXPECT_EQ(observer.reports[i].attempts, alone.reports[i].attempts);
+            EXPECT_EQ(observer.reports[i].tally, alone.reports[i].tally);
+        }
+    }
+}
+
+TEST(ParallelSynthesis, GoesOnFromACheckpoint) {
+    const Parameters parameters = sized(*castle(), {33, 9, 28});
+    const auto preparation = Preparation::make(castle(), parameters).value();
+    RecordingObserver alone;
+    const auto expected = synthesise(*preparation, 5, alone, {}).value();
+    for (std::size_t block = 0; block < alone.reports.size(); block += 7) {
+        const Checkpoint checkpoint = {
+            alone.reports[block].index + 1, alone.reports[block].tally, alone.models[block]};
+        RecordingObserver rest;
+        const auto made = synthesise(*preparation, 5, rest, {}, &checkpoint, 3).value();
+        EXPECT_EQ(made.labels, expected.labels);
+        EXPECT_EQ(made.stats.blocks, expected.stats.blocks);
+        EXPECT_EQ(rest.reports.size(), alone.reports.size() - block - 1);
+    }
+}
+
+// Across the seam, in space, with blocks of any overlap.
+TEST(ParallelSynthesis, IsTheSameOnAClosedGridInSpace) {
+    Example example = testing::make_pillars();
+    example.boundary.fill({BoundaryKind::kPeriodic});
+    example.boundary[static_cast<std::size_t>(Direction::kUp)] = {BoundaryKind::kFree};
+    example.boundary[static_cast<std::size_t>(Direction::kDown)] = {BoundaryKind::kFree};
+    for (const double overlap : {0.0, 0.3, 0.5, 0.8}) {
+        Parameters parameters = sized(example, {17, 13, 14});
+        parameters.blocks = Blocks{{{5, 4, 6}, overlap, 1}, 3};
+        RecordingObserver alone;
+        RecordingObserver together;
+        const auto expected = synthesise(example, parameters, 3, alone, {}).value();
+        const auto made = synthesise(example, parameters, 3, together, {}, nullptr, 4).value();
+        EXPECT_EQ(made.labels, expected.labels) << overlap;
+        EXPECT_EQ(together.models, alone.models) << overlap;
+    }
+}
+
+TEST(ParallelSynthesis, EndsWhenItIsStopped) {
+    class StoppingObserver final : public Observer {
+      public:
+        explicit StoppingObserver(std::stop_source& source) : source_(source) {}
+
+        void on_start(std::uint32_t, std::span<const Label>) override {}
+
+        void on_block(const BlockReport& report) override {
+            reports_ = report.index + 1;
+            if (report.index == 5) {
+                source_.request_stop();
+            }
+        }
+
+        std::uint32_t reports_ = 0;
+
+      private:
+        std::stop_source& source_;
+    };
+
+    const Parameters parameters = sized(*castle(), {60, 9, 60});
+    const auto preparation = Preparation::make(castle(), parameters).value();
+    std::stop_source stop;
+    StoppingObserver observer(stop);
+    const auto made = synthesise(*preparation, 2, observer, stop.get_token(), nullptr, 4);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::kCancelled);
+    EXPECT_GE(observer.reports_, 6U);
+}
+
 TEST(PreparationCache, GivesAnEqualRequestWhatAnEarlierOnePrepared) {
     PreparationCache cache;
     const auto of = [&](const std::shared_ptr<const Example>& example, const GridSize& size) {
