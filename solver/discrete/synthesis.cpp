@@ -18,10 +18,10 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// Blocks that wait to be reported while others are solved, and the most blocks whose dependencies
-// are worth their memory.
+// Blocks that wait to be reported while others are solved, and the most blocks for which the time
+// to find their dependencies, before the first one is solved, goes unnoticed.
 constexpr std::uint32_t kRunAheadMax = 512;
-constexpr std::size_t kParallelBlocksMax = 50'000;
+constexpr std::size_t kParallelBlocksMax = 5'000;
 
 Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
 
