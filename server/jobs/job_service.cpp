@@ -5,6 +5,7 @@
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -88,9 +89,12 @@ void JobService::work(const std::stop_token& stop) {
         expire_now_and_then();
         const auto claim = jobs_.claim(proto::now_millis());
         if (claim && *claim) {
-            // A job that is alone takes the workers that have nothing to do to help.
-            const std::size_t in_hand = ++jobs_in_hand_;
-            run_claim(context, **claim, static_cast<std::uint32_t>(config_.workers / in_hand));
+            // A job that is alone takes the workers that have nothing to do to help, as far as
+            // there are processors for them.
+            const std::size_t threads = std::min<std::size_t>(
+                config_.workers / ++jobs_in_hand_, std::max(1U, std::thread::hardware_concurrency())
+            );
+            run_claim(context, **claim, static_cast<std::uint32_t>(threads));
             --jobs_in_hand_;
             continue;
         }
