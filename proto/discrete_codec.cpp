@@ -1,5 +1,7 @@
 #include "proto/discrete_codec.h"
 
+#include "proto/constraint_codec.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -75,52 +77,6 @@ void read_weights(const Value& value, const RequestLimits& limits, Parameters& p
     parameters.weights = std::move(list);
 }
 
-std::optional<Box> read_box(const Value& value, const RequestLimits& limits) {
-    ObjectReader reader(value);
-    const auto min_value = reader.required("min");
-    const auto max_value = reader.required("max");
-    reader.finish();
-    const auto min = min_value ? min_value->cell(0, limits.extent_max) : std::nullopt;
-    const auto max = max_value ? max_value->cell(0, limits.extent_max) : std::nullopt;
-    if (!min || !max) {
-        return std::nullopt;
-    }
-    if (max->x <= min->x || max->y <= min->y || max->z <= min->z) {
-        value.fault("max is exclusive and must be above min along every axis");
-        return std::nullopt;
-    }
-    return Box{*min, *max};
-}
-
-void read_constraint(const Value& value, const RequestLimits& limits, Parameters& parameters) {
-    discrete::Constraint constraint;
-    ObjectReader reader(value);
-    if (const auto kind = reader.required("kind")) {
-        if (const auto index = kind->one_of({"fixed", "forbidden"})) {
-            constraint.kind = *index == 0 ? discrete::ConstraintKind::kFixed
-                                          : discrete::ConstraintKind::kForbidden;
-        }
-    }
-    if (const auto pieces = reader.required("pieces")) {
-        constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_characters_max)
-                                .value_or(constraint.pieces);
-    }
-    if (const auto box = reader.optional("box")) {
-        constraint.box = read_box(*box, limits);
-    }
-    if (const auto cells = reader.optional("cells")) {
-        if (const auto values = cells->array(1, 100'000)) {
-            for (const Value& cell : *values) {
-                if (const auto place = cell.cell(0, limits.extent_max)) {
-                    constraint.cells.push_back(*place);
-                }
-            }
-        }
-    }
-    reader.finish();
-    parameters.constraints.push_back(std::move(constraint));
-}
-
 const char* order_name(Order order) {
     switch (order) {
         case Order::kScan:
@@ -132,8 +88,6 @@ const char* order_name(Order order) {
     }
     return "scan";
 }
-
-OrderedJson write_cell(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
 
 OrderedJson write_blocks(const std::optional<discrete::Blocks>& blocks) {
     if (!blocks) {
@@ -156,24 +110,6 @@ OrderedJson write_weights(const discrete::Weights& weights) {
         list[name] = weight;
     }
     return list;
-}
-
-OrderedJson write_constraint(const discrete::Constraint& constraint) {
-    OrderedJson written = {
-        {"kind", constraint.kind == discrete::ConstraintKind::kFixed ? "fixed" : "forbidden"},
-        {"pieces", constraint.pieces}};
-    if (constraint.box) {
-        written["box"] = {
-            {"min", write_cell(constraint.box->min)}, {"max", write_cell(constraint.box->max)}};
-    }
-    if (!constraint.cells.empty()) {
-        OrderedJson cells = OrderedJson::array();
-        for (const Cell& cell : constraint.cells) {
-            cells.push_back(write_cell(cell));
-        }
-        written["cells"] = std::move(cells);
-    }
-    return written;
 }
 
 }  // namespace
@@ -242,11 +178,7 @@ Parameters read_parameters(const Value& value, const RequestLimits& limits) {
         read_weights(*weights, limits, parameters);
     }
     if (const auto constraints = reader.optional("constraints")) {
-        if (const auto values = constraints->array(0, limits.constraints_max)) {
-            for (const Value& constraint : *values) {
-                read_constraint(constraint, limits, parameters);
-            }
-        }
+        parameters.constraints = read_constraints(*constraints, limits);
     }
     reader.finish();
     return parameters;
@@ -258,17 +190,13 @@ OrderedJson write_parameters(const Parameters& parameters) {
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
         boundary[discrete::kSideNames[side]] = write_side(*parameters.boundary[side]);
     }
-    OrderedJson constraints = OrderedJson::array();
-    for (const discrete::Constraint& constraint : parameters.constraints) {
-        constraints.push_back(write_constraint(constraint));
-    }
     return {
         {"size", OrderedJson::array({size.x, size.y, size.z})},
         {"blocks", write_blocks(*parameters.blocks)},
         {"boundary", std::move(boundary)},
         {"order", order_name(parameters.order)},
         {"weights", write_weights(*parameters.weights)},
-        {"constraints", std::move(constraints)}};
+        {"constraints", write_constraints(parameters.constraints)}};
 }
 
 }  // namespace modelsynth::proto

@@ -231,7 +231,7 @@ std::optional<std::string> Value::string(std::size_t characters_max) const {
     return text;
 }
 
-std::optional<std::size_t> Value::one_of(std::initializer_list<const char*> names) const {
+std::optional<std::size_t> Value::one_of(std::span<const char* const> names) const {
     std::string listed;
     std::size_t position = 0;
     for (const char* name : names) {

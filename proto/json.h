@@ -13,6 +13,7 @@
 #include <initializer_list>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,7 +85,13 @@ class Value {
     [[nodiscard]] std::optional<bool> boolean() const;
     [[nodiscard]] std::optional<std::string> string(std::size_t characters_max) const;
     // The position in `names` of the string.
-    [[nodiscard]] std::optional<std::size_t> one_of(std::initializer_list<const char*> names) const;
+    [[nodiscard]] std::optional<std::size_t> one_of(std::span<const char* const> names) const;
+
+    [[nodiscard]] std::optional<std::size_t> one_of(std::initializer_list<const char*> names
+    ) const {
+        return one_of(std::span(names.begin(), names.size()));
+    }
+
     // The elements, when it is an array of at least min and at most max.
     [[nodiscard]] std::optional<std::vector<Value>> array(std::size_t min, std::size_t max) const;
     [[nodiscard]] std::optional<std::vector<std::string>> strings(

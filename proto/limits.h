@@ -25,6 +25,9 @@ struct RequestLimits {
     std::size_t name_characters_max = 128;
     std::size_t tags_max = 32;
     std::size_t constraints_max = 1000;
+    std::size_t member_rules_max = 32;   // constraints that take memory for every cell
+    std::size_t voxels_max = 1'000'000;  // values of one constraint
+    std::int32_t separation_max = 64;    // steps; its cost goes with the cube
     double deadline_seconds_max = 3600;
     std::size_t glb_bytes_max = std::size_t{64} << 20;
 };

@@ -2,11 +2,12 @@
 
 #include "solver/core/block_bases.h"
 #include "solver/core/catalog.h"
-#include "solver/core/label_weights.h"
+#include "solver/core/constraints/constraint_board.h"
 #include "solver/core/random.h"
 #include "solver/core/search.h"
 #include "solver/core/search_tally.h"
 #include "solver/core/site_domains.h"
+#include "solver/core/site_weights.h"
 #include "solver/core/topology.h"
 
 #include <algorithm>
@@ -33,13 +34,25 @@ struct BlockResult {
     std::uint32_t attempts = 0;
     SolvedBy solved_by = SolvedBy::kFirstTry;  // of an accepted block
     std::uint32_t backtracks = 0;              // of all attempts
-    Site impossible_site = 0;                  // of the whole; where kImpossible was seen
+    Site impossible_site = 0;                  // of the whole; where kImpossible was seen, ...
+    // ... or which constraint of the board it came of.
+    std::optional<std::size_t> impossible_constraint = std::nullopt;
+};
+
+// A site of a part that has to take one of some labels.
+struct Pin {
+    Site inside = 0;
+    const LabelSet* labels = nullptr;
 };
 
 struct BlockOptions {
     std::uint32_t attempts = 8;
     Order order = Order::kScan;  // of the odd attempts; see attempt_plan()
     std::span<const Site> scan;  // every site of the part once, the order of kScan
+    // Constraints beside the relations. They hold for the model as it is where it is complete, and
+    // their board stands with it; the same is so afterwards. Null: none.
+    ConstraintBoard* board = nullptr;
+    std::optional<Pin> pin = std::nullopt;
 };
 
 // How an attempt at a block goes about it.
@@ -77,7 +90,7 @@ class BlockSearch {
     BlockSearch(
         const Relations& relations,
         const SiteDomains& domains,
-        const LabelWeights& weights,
+        const SiteWeights& weights,
         Bases* bases = nullptr
     )
         : of_width_(make(relations, domains, weights, bases)) {}
@@ -130,7 +143,7 @@ class BlockSearch {
     static std::unique_ptr<AnyWidth> make(
         const Relations& relations,
         const SiteDomains& domains,
-        const LabelWeights& weights,
+        const SiteWeights& weights,
         Bases* bases
     ) {
         const auto of_width = [&]<std::size_t kWords>() -> std::unique_ptr<AnyWidth> {
@@ -161,7 +174,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     OfWidth(
         const Relations& relations,
         const SiteDomains& domains,
-        const LabelWeights& weights,
+        const SiteWeights& weights,
         Bases* bases
     )
         : relations_(relations), domains_(domains), weights_(weights), bases_(bases) {}
@@ -173,9 +186,52 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         RandomKey key,
         const std::stop_token& stop
     ) override {
+        if (options.board == nullptr) {
+            return attempt(part, model, options, key, stop);
+        }
+        options.board->enter(part);
+        const BlockResult result = attempt(part, model, options, key, stop);
+        options.board->leave(model);
+        return result;
+    }
+
+    bool is_determined(const Part& part, std::span<const Label> model, const std::stop_token& stop)
+        override {
+        prepare(part.inner());
+        if (surroundings(part, model, stop) != Propagation::kConsistent) {
+            return true;
+        }
+        for (std::size_t site = 0; site < catalog_->site_count(); ++site) {
+            if (has_several(catalog_->labels(static_cast<Site>(site)))) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+  private:
+    using Inner = typename Part::Inner;
+
+    BlockResult attempt(
+        const Part& part,
+        std::span<Label> model,
+        const BlockOptions& options,
+        RandomKey key,
+        const std::stop_token& stop
+    ) {
         prepare(part.inner());
         BlockResult result;
-        switch (surroundings(part, model, stop)) {
+        Propagation propagation = surroundings(part, model, stop);
+        if (options.pin && propagation == Propagation::kConsistent) {
+            propagation = put(*options.pin, stop);
+        }
+        if (options.board != nullptr && propagation == Propagation::kConsistent) {
+            propagation = options.board->begin(*catalog_, stop);
+            if (propagation == Propagation::kContradiction) {
+                result.impossible_constraint = options.board->blamed();
+            }
+        }
+        switch (propagation) {
             case Propagation::kConsistent:
                 break;
             case Propagation::kStopped:
@@ -187,9 +243,13 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
                 return result;
         }
         start_.assign(catalog_->all_labels().begin(), catalog_->all_labels().end());
+        number_weights(part);
         for (result.attempts = 1; result.attempts <= options.attempts; ++result.attempts) {
             if (result.attempts > 1) {
                 catalog_->restore(start_);
+                if (options.board != nullptr) {
+                    options.board->resume(*catalog_);
+                }
             }
             const AttemptPlan plan = attempt_plan(result.attempts);
             key.attempt = result.attempts;
@@ -214,23 +274,6 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         result.outcome = BlockOutcome::kReverted;
         return result;
     }
-
-    bool is_determined(const Part& part, std::span<const Label> model, const std::stop_token& stop)
-        override {
-        prepare(part.inner());
-        if (surroundings(part, model, stop) != Propagation::kConsistent) {
-            return true;
-        }
-        for (std::size_t site = 0; site < catalog_->site_count(); ++site) {
-            if (has_several(catalog_->labels(static_cast<Site>(site)))) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-  private:
-    using Inner = typename Part::Inner;
 
     // The catalog for such a part; parts of one shape come one after the other.
     void prepare(const Inner& inner) {
@@ -261,6 +304,12 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         propagation = consistent ? catalog_->propagate(stop) : Propagation::kContradiction;
         impossible_ = catalog_->emptied_site();
         return propagation;
+    }
+
+    Propagation put(const Pin& pin, const std::stop_token& stop) {
+        const bool fits = catalog_->narrow(pin.inside, pin.labels->words().data());
+        impossible_ = pin.inside;
+        return fits ? catalog_->propagate(stop) : Propagation::kContradiction;
     }
 
     // What the sites may be by themselves.
@@ -307,8 +356,9 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         std::uint32_t& backtracks
     ) {
         RandomStream random(key);
+        const PartWeights weights = {weights_, weight_numbers_};
         const auto with = [&](auto picker) {
-            Search search(*catalog_, picker, weights_, random, stop);
+            Search search(*catalog_, picker, weights, options.board, random, stop);
             const SearchOutcome outcome = search.run(plan.budget);
             backtracks += search.backtracks();
             return outcome;
@@ -322,9 +372,19 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
                 return with(ScanPicker(shuffled));
             }
             case Order::kMinEntropy:
-                return with(EntropyPicker(*catalog_, weights_, random));
+                return with(EntropyPicker(*catalog_, weights, random));
         }
         return SearchOutcome::kFailed;
+    }
+
+    void number_weights(const Part& part) {
+        if (weights_.is_same_everywhere()) {
+            return;
+        }
+        weight_numbers_.resize(catalog_->site_count());
+        part.for_each_site([&](Site inside, Site whole) {
+            weight_numbers_[inside] = weights_.number(whole);
+        });
     }
 
     std::vector<Site> shuffle(RandomStream& random) const {
@@ -344,11 +404,12 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
 
     const Relations& relations_;
     const SiteDomains& domains_;
-    const LabelWeights& weights_;
+    const SiteWeights& weights_;
     Bases* bases_;
     std::unique_ptr<const Inner> topology_;
     std::optional<Catalog<Inner, kWords>> catalog_;  // of topology_
     std::vector<std::uint16_t> numbers_;             // of the sites' domains
+    std::vector<std::uint16_t> weight_numbers_;      // of the sites' weights; empty: all the same
     std::vector<Word> start_;                        // what the surroundings leave
     Site impossible_ = 0;                            // where they leave nothing
 };

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "solver/core/catalog.h"
-#include "solver/core/label_weights.h"
+#include "solver/core/constraints/constraint_board.h"
 #include "solver/core/random.h"
+#include "solver/core/site_weights.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -25,6 +26,9 @@ enum class SearchOutcome : std::uint8_t { kSolved, kFailed, kStopped };
 // Hands out sites in a fixed order.
 class ScanPicker {
   public:
+    // Whether next() takes note of the changes that the catalog tracks, and clears them.
+    static constexpr bool kFollowsChanges = false;
+
     explicit ScanPicker(std::span<const Site> order) : order_(order) {}
 
     // The next site with more than one label left; false at the end.
@@ -54,8 +58,10 @@ class ScanPicker {
 // when a site changes; an entry whose key is no longer the site's is passed over.
 class EntropyPicker {
   public:
+    static constexpr bool kFollowsChanges = true;
+
     template <class CatalogType>
-    EntropyPicker(CatalogType& catalog, const LabelWeights& weights, RandomStream& random)
+    EntropyPicker(CatalogType& catalog, const PartWeights& weights, RandomStream& random)
         : weights_(weights), keys_(catalog.site_count()), noise_(catalog.site_count()) {
         catalog.track_changes();
         catalog.clear_changed();
@@ -102,7 +108,7 @@ class EntropyPicker {
             return;
         }
         const std::uint64_t key =
-            std::uint64_t{weights_.entropy(catalog.labels(site))} << 32 | noise_[site];
+            std::uint64_t{weights_.at(site).entropy(catalog.labels(site))} << 32 | noise_[site];
         if (key == keys_[site]) {
             return;
         }
@@ -111,7 +117,7 @@ class EntropyPicker {
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
     }
 
-    const LabelWeights& weights_;
+    PartWeights weights_;
     std::vector<std::uint64_t> keys_;
     std::vector<std::uint32_t> noise_;
     std::vector<Entry> heap_;
@@ -134,23 +140,30 @@ struct SearchBudget {
 template <class CatalogType, class Picker>
 class Search {
   public:
+    // `board`: the constraints beside the relations, which follow the catalog; null: none.
     Search(
         CatalogType& catalog,
         Picker& picker,
-        const LabelWeights& weights,
+        const PartWeights& weights,
+        ConstraintBoard* board,
         RandomStream& random,
         const std::stop_token& stop
     )
-        : catalog_(catalog), picker_(picker), weights_(weights), random_(random), stop_(stop) {}
+        : catalog_(catalog),
+          picker_(picker),
+          weights_(weights),
+          board_(board),
+          random_(random),
+          stop_(stop) {}
 
     [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
         Site site = 0;
         while (picker_.next(catalog_, site)) {
-            const Label label = weights_.draw(catalog_.labels(site), random_);
+            const Label label = weights_.at(site).draw(catalog_.labels(site), random_);
             const auto mark = catalog_.mark();
             const std::size_t position = picker_.position();
             catalog_.assign(site, label);
-            Propagation propagation = catalog_.propagate(stop_);
+            Propagation propagation = propagate();
             if (propagation == Propagation::kConsistent) {
                 if (budget.backtracks > 0) {
                     choices_.push_back({mark, position, site, label});
@@ -160,7 +173,7 @@ class Search {
                 continue;
             }
             if (propagation == Propagation::kContradiction) {
-                catalog_.undo(mark);
+                undo(mark);
                 propagation = refute(site, label);
             }
             while (propagation == Propagation::kContradiction && !choices_.empty() &&
@@ -195,8 +208,27 @@ class Search {
     static constexpr std::uint32_t kJumpDoublingsMax = 10;
 
     Propagation refute(Site site, Label label) {
-        return catalog_.remove(site, label) ? catalog_.propagate(stop_)
-                                            : Propagation::kContradiction;
+        return catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
+    }
+
+    Propagation propagate() {
+        Propagation propagation = catalog_.propagate(stop_);
+        if (board_ != nullptr && propagation == Propagation::kConsistent) {
+            propagation = board_->settle(catalog_, stop_);
+            if constexpr (!Picker::kFollowsChanges) {
+                if (propagation == Propagation::kConsistent) {
+                    catalog_.clear_changed();
+                }
+            }
+        }
+        return propagation;
+    }
+
+    void undo(Mark mark) {
+        catalog_.undo(mark);
+        if (board_ != nullptr) {
+            board_->rewind(catalog_);
+        }
     }
 
     Propagation take_back() {
@@ -216,7 +248,7 @@ class Search {
         for (std::size_t i = 0; i < jump; ++i) {
             choice = choices_.back();
             choices_.pop_back();
-            catalog_.undo(choice.mark);
+            undo(choice.mark);
         }
         picker_.go_back(choice.position);
         // What was jumped over is not refuted.
@@ -225,7 +257,8 @@ class Search {
 
     CatalogType& catalog_;
     Picker& picker_;
-    const LabelWeights& weights_;
+    PartWeights weights_;
+    ConstraintBoard* board_;
     RandomStream& random_;
     const std::stop_token& stop_;
     std::vector<Choice> choices_;

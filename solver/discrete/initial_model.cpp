@@ -1,6 +1,9 @@
 #include "solver/discrete/initial_model.h"
 
 #include "solver/core/block_search.h"
+#include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/names.h"
+#include "solver/discrete/planting.h"
 
 #include <algorithm>
 #include <map>
@@ -68,7 +71,7 @@ std::optional<std::vector<Label>> find_layers(const Example& example, const Prob
                 return;
             }
             const std::uint64_t own =
-                example.empty == label ? kEmptyScore : 1 + problem.weights.of(label);
+                example.empty == label ? kEmptyScore : 1 + problem.weights.table(0).of(label);
             if (y == 0) {
                 best[y][label] = {own, kNoLabel};
                 return;
@@ -270,39 +273,131 @@ Error gave_up(const Example& example, const Problem& problem) {
     return {ErrorCode::kGaveUp, std::move(message), {}};
 }
 
-// Nothing when no attempt succeeded.
-Result<std::optional<InitialModel>> solve_whole(
-    const Example& example,
-    const Problem& problem,
-    BlockSearch<GridPart>& search,
-    std::uint32_t attempts,
-    std::uint64_t seed,
-    const std::stop_token& stop
-) {
-    InitialModel model = {std::vector<Label>(problem.size.cell_count(), kNoLabel), true};
-    const GridPart part(problem.size, problem.periodic, Box::whole(problem.size));
-    const std::vector<Site> scan = column_order(problem.size);
-    const BlockResult result = search.modify(
-        part,
-        std::span<Label>(model.labels),
-        {attempts, Order::kScan, scan},
-        {seed, kWholeKey, 0, 0},
-        stop
-    );
-    switch (result.outcome) {
-        case BlockOutcome::kAccepted:
-            return std::optional(std::move(model));
-        case BlockOutcome::kStopped:
-            return tl::unexpected(Error{ErrorCode::kCancelled, "stopped", {}});
-        case BlockOutcome::kImpossible:
-            return tl::unexpected(
-                contradiction_at(example, problem, problem.size.cell(result.impossible_site))
-            );
-        case BlockOutcome::kReverted:
-            break;
-    }
-    return std::optional<InitialModel>();
+Error violated(const Example& example, const MemberRule& rule) {
+    return {
+        ErrorCode::kGaveUp,
+        "no initial model was found in which " + name_rule(example, rule) +
+            " holds: " + std::to_string(kWholeAttempts) + " attempts at the whole at once failed",
+        {}};
 }
+
+class Finder {
+  public:
+    Finder(
+        const Preparation& preparation,
+        BlockSearch<GridPart>& search,
+        std::uint64_t seed,
+        const std::stop_token& stop
+    )
+        : preparation_(preparation),
+          example_(preparation.example()),
+          problem_(preparation.problem()),
+          search_(search),
+          seed_(seed),
+          stop_(stop) {}
+
+    // One for which the member rules are not asked.
+    Result<InitialModel> find() {
+        if (const auto& plain = preparation_.plain_model()) {
+            return InitialModel{*plain, false};
+        }
+        Mender mender(problem_, search_, seed_, stop_);
+        const auto layers =
+            preparation_.is_plain_model_rigid() ? std::nullopt : find_layers(example_, problem_);
+        if (layers) {
+            InitialModel model = {spread_layers(problem_, *layers), false};
+            if (mender.mend(model.labels)) {
+                return model;
+            }
+        } else {
+            if (problem_.size.cell_count() <= kWholeFirstCellsMax) {
+                auto model = solve_whole(kWholeFirstAttempts, nullptr);
+                if (!model) {
+                    return tl::unexpected(std::move(model.error()));
+                }
+                if (*model) {
+                    return std::move(**model);
+                }
+            }
+            auto tiled = find_any_tile(problem_, seed_, stop_);
+            if (tiled && mender.mend(*tiled)) {
+                return InitialModel{std::move(*tiled), false};
+            }
+        }
+        auto model = solve_whole(kWholeAttempts, nullptr);
+        if (!model) {
+            return tl::unexpected(std::move(model.error()));
+        }
+        if (!*model) {
+            return tl::unexpected(gave_up(example_, problem_));
+        }
+        return std::move(**model);
+    }
+
+    // The model, changed so that the member rules hold, or another one.
+    Result<InitialModel> satisfy(InitialModel model) {
+        const auto board = make_board(problem_, problem_.member_rules);
+        if (!board->find_violated(model.labels)) {
+            return model;
+        }
+        const auto& blocks = *preparation_.parameters().blocks;
+        const GridSize block = blocks ? blocks->layout.size : problem_.size;
+        const bool planted = plant_counts(problem_, search_, block, seed_, model.labels, stop_);
+        const auto rule = board->find_violated(model.labels);
+        if (planted && !rule) {
+            return model;
+        }
+        if (stop_.stop_requested()) {
+            return tl::unexpected(stopped());
+        }
+        auto whole = solve_whole(kWholeAttempts, board.get());
+        if (!whole) {
+            return tl::unexpected(std::move(whole.error()));
+        }
+        if (!*whole) {
+            return tl::unexpected(violated(example_, problem_.member_rules[rule.value_or(0)]));
+        }
+        return std::move(**whole);
+    }
+
+  private:
+    static Error stopped() { return {ErrorCode::kCancelled, "stopped", {}}; }
+
+    // Nothing when no attempt succeeded.
+    Result<std::optional<InitialModel>> solve_whole(
+        std::uint32_t attempts, ConstraintBoard* board
+    ) {
+        InitialModel model = {std::vector<Label>(problem_.size.cell_count(), kNoLabel), true};
+        const GridPart part(problem_.size, problem_.periodic, Box::whole(problem_.size));
+        const std::vector<Site> scan = column_order(problem_.size);
+        BlockOptions options = {attempts, Order::kScan, scan};
+        options.board = board;
+        if (board != nullptr) {
+            board->start(model.labels);
+        }
+        const BlockResult result = search_.modify(
+            part, std::span<Label>(model.labels), options, {seed_, kWholeKey, 0, 0}, stop_
+        );
+        switch (result.outcome) {
+            case BlockOutcome::kAccepted:
+                return std::optional(std::move(model));
+            case BlockOutcome::kStopped:
+                return tl::unexpected(stopped());
+            case BlockOutcome::kImpossible:
+                return tl::unexpected(contradiction_of(example_, problem_, result));
+            case BlockOutcome::kReverted:
+                break;
+        }
+        return std::optional<InitialModel>();
+    }
+
+    const Preparation& preparation_;
+    const Example& example_;
+    const Problem& problem_;
+    BlockSearch<GridPart>& search_;
+    std::uint64_t seed_;
+    const std::stop_token& stop_;
+};
 
 }  // namespace
 
@@ -319,8 +414,17 @@ std::vector<Site> column_order(const GridSize& size) {
     return order;
 }
 
-Error contradiction_at(const Example& example, const Problem& problem, const Cell& cell) {
-    const LabelSet& own = problem.domains.at(static_cast<Site>(problem.size.index(cell)));
+Error contradiction_of(const Example& example, const Problem& problem, const BlockResult& result) {
+    if (result.impossible_constraint) {
+        const MemberRule& rule = problem.member_rules[*result.impossible_constraint];
+        return {
+            ErrorCode::kContradiction,
+            "no model of this size exists: " + name_rule(example, rule) +
+                " cannot hold with what the boundary and the other constraints leave",
+            {}};
+    }
+    const Cell cell = problem.size.cell(result.impossible_site);
+    const LabelSet& own = problem.domains.at(result.impossible_site);
     const std::string sides = name_sides(problem.size, cell);
     return {
         ErrorCode::kContradiction,
@@ -346,45 +450,17 @@ std::optional<std::vector<Label>> find_plain_model(const Example& example, const
 }
 
 Result<InitialModel> find_initial_model(
-    const Example& example,
-    const Problem& problem,
+    const Preparation& preparation,
     BlockSearch<GridPart>& search,
-    bool may_be_plain,
     std::uint64_t seed,
     const std::stop_token& stop
 ) {
-    const auto whole = [&](std::uint32_t attempts) {
-        return solve_whole(example, problem, search, attempts, seed, stop);
-    };
-    Mender mender(problem, search, seed, stop);
-    if (const auto layers = may_be_plain ? find_layers(example, problem) : std::nullopt) {
-        InitialModel model = {spread_layers(problem, *layers), false};
-        if (mender.mend(model.labels)) {
-            return model;
-        }
-    } else {
-        if (problem.size.cell_count() <= kWholeFirstCellsMax) {
-            auto model = whole(kWholeFirstAttempts);
-            if (!model) {
-                return tl::unexpected(std::move(model.error()));
-            }
-            if (*model) {
-                return std::move(**model);
-            }
-        }
-        auto tiled = find_any_tile(problem, seed, stop);
-        if (tiled && mender.mend(*tiled)) {
-            return InitialModel{std::move(*tiled), false};
-        }
+    Finder finder(preparation, search, seed, stop);
+    auto model = finder.find();
+    if (!model || preparation.problem().member_rules.empty()) {
+        return model;
     }
-    auto model = whole(kWholeAttempts);
-    if (!model) {
-        return tl::unexpected(std::move(model.error()));
-    }
-    if (!*model) {
-        return tl::unexpected(gave_up(example, problem));
-    }
-    return std::move(**model);
+    return finder.satisfy(std::move(*model));
 }
 
 }  // namespace modelsynth::discrete

@@ -4,6 +4,7 @@
 #include "solver/core/grid_topology.h"
 #include "solver/core/result.h"
 #include "solver/discrete/example.h"
+#include "solver/discrete/preparation.h"
 #include "solver/discrete/problem.h"
 
 #include <cstdint>
@@ -25,16 +26,14 @@ struct InitialModel {
 //   3. a small tile that repeats along x and z;
 //   4. the whole at once, many times.
 // Where 1 and 3 leave cells wrong, because something is fixed there, they are mended by making a
-// growing box around them anew.
-// Without `may_be_plain` the first way is left out.
-// `search` is one of the problem's. Deterministic in (problem, seed). Fails: kContradiction when
-// propagation proves that nothing fits, kGaveUp when nothing was found, kCancelled; the message
-// names pieces and sides.
+// growing box around them anew. Where a count asks for more pieces, they are planted; what other
+// constraints ask beyond that only a search of the whole can give.
+// `search` is one of the preparation's. Deterministic in (preparation, seed). Fails: kContradiction
+// when propagation proves that nothing fits, kGaveUp when nothing was found, kCancelled; the
+// message names pieces and sides, or the constraint.
 [[nodiscard]] Result<InitialModel> find_initial_model(
-    const Example& example,
-    const Problem& problem,
+    const Preparation& preparation,
     BlockSearch<GridPart>& search,
-    bool may_be_plain,
     std::uint64_t seed,
     const std::stop_token& stop
 );
@@ -48,9 +47,9 @@ struct InitialModel {
 // The sites of a grid column by column, each from the bottom up: the order of Algorithm 3.1.
 [[nodiscard]] std::vector<Site> column_order(const GridSize& size);
 
-// The error for a cell that propagation left without any piece.
-[[nodiscard]] Error contradiction_at(
-    const Example& example, const Problem& problem, const Cell& cell
+// The error for a search of the whole that was proved impossible.
+[[nodiscard]] Error contradiction_of(
+    const Example& example, const Problem& problem, const BlockResult& result
 );
 
 }  // namespace modelsynth::discrete

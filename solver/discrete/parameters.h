@@ -5,6 +5,7 @@
 #include "solver/core/search.h"
 #include "solver/discrete/example.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,15 +27,118 @@ struct Blocks {
     friend bool operator==(const Blocks&, const Blocks&) = default;
 };
 
-enum class ConstraintKind : std::uint8_t { kFixed, kForbidden };
+// Grey values over x (west to east) and z (north to south), stretched over the model: 0 nothing,
+// 1 all. From an image, whose text is kept so that it can be told again.
+struct Mask {
+    std::int32_t width = 0;
+    std::int32_t depth = 0;
+    std::vector<std::uint8_t> values;  // row by row from the north, 255 is all
+    std::string source;
 
-// Cells that may take only these pieces (kFixed) or none of them (kForbidden). Without box and
-// cells it holds everywhere; with both, in the cells of either.
+    friend bool operator==(const Mask&, const Mask&) = default;
+};
+
+// Values 0 ... 1 on a grid of its own that is stretched over the model; as Example::cells.
+struct Voxels {
+    GridSize size;
+    std::vector<double> values;
+
+    friend bool operator==(const Voxels&, const Voxels&) = default;
+};
+
+// Where a constraint holds: in the cells of any of these, or everywhere when none is given.
+struct Region {
+    std::optional<Box> box = std::nullopt;
+    std::vector<Cell> cells = {};
+    std::optional<Mask> mask = std::nullopt;
+    std::optional<Voxels> voxels = std::nullopt;
+
+    friend bool operator==(const Region&, const Region&) = default;
+};
+
+// What a constraint asks of the pieces it names.
+struct Fixed {  // only these pieces
+    friend bool operator==(const Fixed&, const Fixed&) = default;
+};
+
+struct Forbidden {  // none of these pieces
+    friend bool operator==(const Forbidden&, const Forbidden&) = default;
+};
+
+// Their weights are multiplied by this (thesis 3.5.3), by 1 + value * (weight - 1) where a mask or
+// voxels give a value between 0 and 1; 0 removes them. >= 0.
+struct Probability {
+    double weight = 1;
+
+    friend bool operator==(const Probability&, const Probability&) = default;
+};
+
+// So many of them all together.
+struct Count {
+    std::uint32_t min = 0;
+    std::optional<std::uint32_t> max;
+
+    friend bool operator==(const Count&, const Count&) = default;
+};
+
+// Any two of them at least so many steps along the axes apart. >= 1.
+struct Separation {
+    std::int32_t distance = 1;
+
+    friend bool operator==(const Separation&, const Separation&) = default;
+};
+
+// No more of them in a straight line. >= 1.
+struct MaxRun {
+    std::int32_t max = 1;
+    std::optional<std::uint8_t> axis;  // 0 x, 1 y, 2 z; none: along any
+
+    friend bool operator==(const MaxRun&, const MaxRun&) = default;
+};
+
+// They hang together through the faces of their cells.
+struct Connected {
+    friend bool operator==(const Connected&, const Connected&) = default;
+};
+
+// They form no ring through the faces of their cells.
+struct Acyclic {
+    friend bool operator==(const Acyclic&, const Acyclic&) = default;
+};
+
+// They link two cells through the faces of theirs.
+struct Path {
+    Cell from;
+    Cell to;
+
+    friend bool operator==(const Path&, const Path&) = default;
+};
+
+using Rule = std::
+    variant<Fixed, Forbidden, Probability, Count, Separation, MaxRun, Connected, Acyclic, Path>;
+
+// As requests name the rules, in the order of the alternatives of Rule.
+inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames = {
+    "fixed",
+    "forbidden",
+    "probability",
+    "count",
+    "separation",
+    "max_run",
+    "connected",
+    "acyclic",
+    "path"};
+
+// Whether a rule speaks of the cells that hold its pieces together, not of each cell by itself.
+[[nodiscard]] inline bool is_member_rule(const Rule& rule) {
+    return !std::holds_alternative<Fixed>(rule) && !std::holds_alternative<Forbidden>(rule) &&
+           !std::holds_alternative<Probability>(rule);
+}
+
 struct Constraint {
-    ConstraintKind kind = ConstraintKind::kFixed;
+    Rule rule;
     std::vector<std::string> pieces;
-    std::optional<Box> box;
-    std::vector<Cell> cells;
+    Region region = {};
 
     friend bool operator==(const Constraint&, const Constraint&) = default;
 };

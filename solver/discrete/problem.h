@@ -1,14 +1,17 @@
 #pragma once
 
 #include "solver/core/grid_topology.h"
-#include "solver/core/label_weights.h"
 #include "solver/core/relations.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
+#include "solver/core/site_weights.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,11 +21,13 @@ namespace modelsynth::discrete {
 // per direction. Exactly the pairs that stand in the example, and those listed in `adjacency`.
 [[nodiscard]] Relations find_transitions(const Example& example);
 
-// Everything wrong with parameters that are well-formed by themselves, against this example:
-// unknown pieces, cells outside the model, sides that cannot go together. Pointers are relative
-// to `parameters`. Empty: nothing wrong.
-// Requires: defaults filled in.
-[[nodiscard]] std::vector<Fault> find_faults(const Example& example, const Parameters& parameters);
+// A constraint on the cells whose piece is one of a set: what cannot be said of a cell by itself.
+struct MemberRule {
+    std::size_t constraint = 0;  // its number in the parameters
+    Rule rule;
+    LabelSet labels;
+    std::vector<std::uint8_t> applies;  // by cell; empty: everywhere
+};
 
 // A request as the search sees it.
 struct Problem {
@@ -30,17 +35,14 @@ struct Problem {
     Periodic periodic;
     Relations relations;
     SiteDomains domains;  // boundary, fixed and forbidden cells, removed pieces
-    LabelWeights weights;
+    SiteWeights weights;  // table 0: those without the constraints
+    std::vector<MemberRule> member_rules;
+    std::unique_ptr<const GridTopology> topology;  // of the whole, where a member rule needs it
 };
 
 // Requires: find_faults() found nothing (checked).
 // Fails:    kContradiction when some cell can take no piece at all; the message names the sides.
+//           kTooLarge for too many tables of weights.
 [[nodiscard]] Result<Problem> make_problem(const Example& example, const Parameters& parameters);
-
-// "tower", "wall" and "gate": names of pieces as a person reads them, at most eight.
-[[nodiscard]] std::string list_names(const Example& example, const LabelSet& labels);
-
-// The sides of a grid that a cell lies on: "the bottom and north sides"; empty: none.
-[[nodiscard]] std::string name_sides(const GridSize& size, const Cell& cell);
 
 }  // namespace modelsynth::discrete

@@ -2,6 +2,7 @@
 
 #include "solver/core/block_queue.h"
 #include "solver/core/block_schedule.h"
+#include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/initial_model.h"
 
 #include <exception>
@@ -38,6 +39,16 @@ class BlockSolver {
 
     [[nodiscard]] Preparation::Search& search() { return *search_; }
 
+    // The model stands as it is from now on, but for what modify() makes of it; it satisfies the
+    // member rules where it is complete.
+    void begin(std::span<const Label> labels) {
+        const Problem& problem = preparation_.problem();
+        if (!problem.member_rules.empty()) {
+            board_ = make_board(problem, problem.member_rules);
+            board_->start(labels);
+        }
+    }
+
     BlockResult modify(
         std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
     ) {
@@ -51,13 +62,9 @@ class BlockSolver {
             scan_ = column_order(shape);
             scan_shape_ = shape;
         }
-        return search_->modify(
-            part,
-            labels,
-            {attempts, preparation_.parameters().order, scan_},
-            {seed_, index, 0, 0},
-            stop_
-        );
+        BlockOptions options = {attempts, preparation_.parameters().order, scan_};
+        options.board = board_.get();
+        return search_->modify(part, labels, options, {seed_, index, 0, 0}, stop_);
     }
 
   private:
@@ -65,6 +72,7 @@ class BlockSolver {
     std::uint64_t seed_;
     const std::stop_token& stop_;
     std::unique_ptr<Preparation::Search> search_;
+    std::unique_ptr<ConstraintBoard> board_;  // null: the problem has no member rules
     std::vector<Site> scan_;
     GridSize scan_shape_;
 };
@@ -104,39 +112,30 @@ class Run {
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
         }
-        Result<InitialModel> found;
-        if (!preparation_.plain_model()) {
-            found = find_initial_model(
-                preparation_.example(),
-                problem_,
-                solver_.search(),
-                !preparation_.is_plain_model_rigid(),
-                seed_,
-                stop_
-            );
-            if (!found) {
-                return tl::unexpected(std::move(found.error()));
-            }
+        const auto initial = find_initial_model(preparation_, solver_.search(), seed_, stop_);
+        if (!initial) {
+            return tl::unexpected(initial.error());
         }
-        const std::vector<Label>& initial =
-            preparation_.plain_model() ? *preparation_.plain_model() : found->labels;
-        labels_ = initial;
+        labels_ = initial->labels;
         if (from != nullptr) {
             go_on_from(*from, schedule->size());
         }
+        solver_.begin(labels_);
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
         observer_.on_start(blocks_total_, labels_);
-        const bool in_parallel = threads > 1 && schedule->size() <= kParallelBlocksMax;
+        // Constraints on the whole make a block depend on all before it.
+        const bool in_parallel =
+            threads > 1 && schedule->size() <= kParallelBlocksMax && problem_.member_rules.empty();
         if (!(in_parallel ? modify_in_parallel(*schedule, blocks.attempts, threads)
                           : modify_in_turn(*schedule, blocks.attempts))) {
             return tl::unexpected(cancelled());
         }
-        if (found->is_searched) {
+        if (initial->is_searched) {
             return finish(1);
         }
         std::size_t changed = 0;
         for (std::size_t site = 0; site < labels_.size(); ++site) {
-            changed += std::size_t{labels_[site] != initial[site]};
+            changed += std::size_t{labels_[site] != initial->labels[site]};
         }
         return finish(static_cast<double>(changed) / static_cast<double>(labels_.size()));
     }
@@ -151,6 +150,7 @@ class Run {
         }
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
+        solver_.begin(labels_);
         const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
@@ -159,9 +159,7 @@ class Run {
             case BlockOutcome::kStopped:
                 return tl::unexpected(cancelled());
             case BlockOutcome::kImpossible:
-                return tl::unexpected(contradiction_at(
-                    preparation_.example(), problem_, problem_.size.cell(result.impossible_site)
-                ));
+                return tl::unexpected(contradiction_of(preparation_.example(), problem_, result));
             case BlockOutcome::kReverted:
                 break;
         }

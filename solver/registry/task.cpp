@@ -1,6 +1,6 @@
 #include "solver/registry/task.h"
 
-#include "solver/discrete/problem.h"
+#include "solver/discrete/faults.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
 

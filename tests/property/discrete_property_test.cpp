@@ -1,4 +1,5 @@
 #include "solver/core/random.h"
+#include "solver/discrete/faults.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/support/consistency_checker.h"
@@ -68,12 +69,12 @@ Case make_case(std::uint64_t seed) {
         const Label cell =
             made.example.cells[random.below(static_cast<std::uint32_t>(made.example.cells.size()))];
         parameters.constraints.push_back(
-            {ConstraintKind::kFixed,
+            {Fixed{},
              {made.example.pieces[cell].name},
-             std::nullopt,
-             {{below(static_cast<std::uint32_t>(parameters.size->x)),
-               below(static_cast<std::uint32_t>(parameters.size->y)),
-               below(static_cast<std::uint32_t>(parameters.size->z))}}}
+             {.cells =
+                  {{below(static_cast<std::uint32_t>(parameters.size->x)),
+                    below(static_cast<std::uint32_t>(parameters.size->y)),
+                    below(static_cast<std::uint32_t>(parameters.size->z))}}}}
         );
     }
     parameters = fill_defaults(parameters, made.example);
@@ -111,7 +112,7 @@ void expect_wishes_held(const Case& wanted, const Synthesis& model, std::uint64_
         }
     });
     for (const Constraint& constraint : wanted.parameters.constraints) {
-        const Label label = model.labels[size.index(constraint.cells[0])];
+        const Label label = model.labels[size.index(constraint.region.cells[0])];
         ASSERT_EQ(example.pieces[label].name, constraint.pieces[0]) << "seed " << seed;
     }
 }

@@ -180,7 +180,7 @@ TEST(BlockSearch, ColoursAGeneralGraph) {
     const Relations relations = make_colouring(3);
     const SiteDomains domains(10, LabelSet::all(3));
     const std::array<double, 3> given = {1, 1, 1};
-    const LabelWeights weights(given);
+    const SiteWeights weights{LabelWeights(given)};
     std::vector<Label> labels(10, kNoLabel);
     std::vector<Site> scan(10);
     std::iota(scan.begin(), scan.end(), Site{0});
@@ -210,7 +210,7 @@ TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
     const std::array<double, 2> given = {1, 1};
     std::vector<Label> labels(3, 1);
     const std::vector<Site> scan = {0, 1, 2};
-    const LabelWeights weights(given);
+    const SiteWeights weights{LabelWeights(given)};
     const BlockResult result =
         BlockSearch<WholeGraph>(relations, domains, weights)
             .modify(WholeGraph(graph), std::span<Label>(labels), {5, Order::kScan, scan}, {}, {});
@@ -241,7 +241,7 @@ TEST(BlockSearch, KnowledgeKeptFromBlockToBlockChangesNoResult) {
         domains.narrow(site, some);
     }
     const std::vector<double> given(9, 1);
-    const LabelWeights weights(given);
+    const SiteWeights weights{LabelWeights(given)};
     std::vector<Label> with(size.cell_count(), 3);
     std::vector<Label> without = with;
     BlockBases<GridTopology> bases;
@@ -307,7 +307,7 @@ TEST(BlockSearch, StopsWhenAskedAndLeavesTheModel) {
     const SiteDomains domains(size.cell_count(), LabelSet::all(3));
     const std::array<double, 3> given = {1, 1, 1};
     std::vector<Label> labels(size.cell_count(), 2);
-    const LabelWeights weights(given);
+    const SiteWeights weights{LabelWeights(given)};
     const BlockResult result =
         BlockSearch<GridPart>(relations, domains, weights)
             .modify(part, std::span<Label>(labels), {1, Order::kRandom, {}}, {}, stop.get_token());

@@ -1,3 +1,4 @@
+#include "solver/discrete/faults.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
@@ -142,8 +143,8 @@ TEST(Synthesis, HoldsBoundariesFixedCellsAndForbiddenPieces) {
     bottom = SideBoundary{BoundaryKind::kPieces, {"a"}};
     top = SideBoundary{BoundaryKind::kPieces, {"b"}};
     parameters.constraints = {
-        {ConstraintKind::kFixed, {"c"}, std::nullopt, {{3, 1, 4}, {8, 1, 8}}},
-        {ConstraintKind::kForbidden, {"c"}, Box{{0, 0, 0}, {2, 5, 12}}, {}}};
+        {Fixed{}, {"c"}, {.cells = {{3, 1, 4}, {8, 1, 8}}}},
+        {Forbidden{}, {"c"}, {.box = Box{{0, 0, 0}, {2, 5, 12}}}}};
     parameters = fill_defaults(parameters, example);
     RecordingObserver observer;
     const auto model = synthesise(example, parameters, 1, observer, {});
@@ -255,7 +256,7 @@ TEST(FindFaults, NamesEveryUnknownPieceWithItsPlace) {
         SideBoundary{BoundaryKind::kPeriodic, {}};
     parameters.weights = WeightList{{"a/b~", 2}};
     parameters.constraints = {
-        {ConstraintKind::kFixed, {"y"}, Box{{0, 0, 0}, {7, 1, 1}}, {{0, 4, 0}}}};
+        {Fixed{}, {"y"}, {.box = Box{{0, 0, 0}, {7, 1, 1}}, .cells = {{0, 4, 0}}}}};
     std::vector<std::string> pointers;
     for (const Fault& fault : find_faults(example, fill_defaults(parameters, example))) {
         pointers.push_back(fault.pointer);

@@ -84,7 +84,7 @@ std::shared_ptr<const Example> chequers() {
 InitialModel initial_model(const std::shared_ptr<const Example>& example, const GridSize& size) {
     const auto preparation = Preparation::make(example, sized(*example, size)).value();
     const auto search = preparation->take_search();
-    return find_initial_model(*example, preparation->problem(), *search, true, 1, {}).value();
+    return find_initial_model(*preparation, *search, 1, {}).value();
 }
 
 TEST(InitialModel, OfAnExampleWithoutGroundIsSearchedOrWhenLargeATile) {
@@ -118,8 +118,7 @@ TEST(InitialModel, OfGroundIsPlainAndDependsOnNoSeed) {
     const auto search = preparation->take_search();
     ASSERT_TRUE(preparation->plain_model());
     for (const std::uint64_t seed : {1U, 2U}) {
-        const auto found =
-            find_initial_model(*castle(), preparation->problem(), *search, true, seed, {});
+        const auto found = find_initial_model(*preparation, *search, seed, {});
         EXPECT_FALSE(found->is_searched);
         EXPECT_EQ(found->labels, preparation->plain_model());
     }
@@ -224,7 +223,7 @@ TEST(PreparationCache, GivesAnEqualRequestWhatAnEarlierOnePrepared) {
     EXPECT_NE(of(std::make_shared<const Example>(*castle()), {10, 9, 10}), first);
     Parameters forbidding = sized(*castle(), {10, 9, 10});
     forbidding.constraints.push_back(
-        {ConstraintKind::kForbidden, {castle()->pieces[1].name}, Box{{0, 0, 0}, {1, 9, 1}}, {}}
+        {Forbidden{}, {castle()->pieces[1].name}, {.box = Box{{0, 0, 0}, {1, 9, 1}}}}
     );
     EXPECT_NE(cache.find_or_make(castle(), forbidding).value(), first);
     EXPECT_EQ(of(castle(), {10, 9, 10}), first);
@@ -251,7 +250,7 @@ TEST(PreparationCache, TellsWhyARequestCannotBePrepared) {
     auto example = std::make_shared<Example>(testing::make_pillars());
     Parameters parameters = sized(*example, {6, 6, 6});
     parameters.constraints.push_back(
-        {ConstraintKind::kForbidden, {"a", "b", "c", "d"}, Box{{2, 2, 2}, {3, 3, 3}}, {}}
+        {Forbidden{}, {"a", "b", "c", "d"}, {.box = Box{{2, 2, 2}, {3, 3, 3}}}}
     );
     const auto made = cache.find_or_make(example, parameters);
     ASSERT_FALSE(made);

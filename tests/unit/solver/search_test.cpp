@@ -72,13 +72,14 @@ Result search(
     const Relations relations = testing::make_colouring(kLabels);
     RandomStream random({seed, 0, 0, 2});
     const std::vector<double> given(kLabels, 1);
-    const LabelWeights weights(given);
+    const SiteWeights everywhere{LabelWeights(given)};
+    const PartWeights weights = {everywhere, {}};
     GraphCatalog catalog(graph, relations);
     catalog.fill(LabelSet::all(kLabels).words());
     catalog.enqueue_all();
     EXPECT_EQ(catalog.propagate({}), Propagation::kConsistent);
     auto picker = make_picker(catalog, weights, random);
-    Search search(catalog, picker, weights, random, {});
+    Search search(catalog, picker, weights, nullptr, random, {});
     Result result = {search.run({budget}), {}, search.backtracks()};
     if (result.outcome == SearchOutcome::kSolved) {
         for (Site site = 0; site < kSites; ++site) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "solver/core/grid.h"
+#include "solver/core/label_set.h"
+#include "solver/discrete/example.h"
+#include "solver/discrete/problem.h"
+
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace modelsynth::discrete {
+
+// From names to what they stand for, and back. Thread-safe.
+
+using LabelOfName = std::unordered_map<std::string, Label>;
+
+[[nodiscard]] LabelOfName labels_by_name(const Example& example);
+
+// Requires: every name is known.
+[[nodiscard]] LabelSet set_of(const LabelOfName& labels, const std::vector<std::string>& names);
+
+// "tower", "wall" and "gate": names of pieces as a person reads them, at most eight.
+[[nodiscard]] std::string list_names(const Example& example, const LabelSet& labels);
+
+// The outermost layer of a grid on one side.
+[[nodiscard]] Box layer(const GridSize& size, std::size_t side);
+
+// The sides of a grid that a cell lies on: "the bottom and north sides"; empty: none.
+[[nodiscard]] std::string name_sides(const GridSize& size, const Cell& cell);
+
+// "constraint 2 (count of "tower" and "gate")": as a person reads it.
+[[nodiscard]] std::string name_rule(const Example& example, const MemberRule& rule);
+
+}  // namespace modelsynth::discrete

@@ -1,0 +1,107 @@
+"""Constraints re-verified on a labels.json from the request alone, the slow and plain way."""
+
+import itertools
+
+
+class Oracle:
+    """One model: the names of its pieces by place, and which axes are periodic."""
+
+    def __init__(self, labels, boundary):
+        self.size = tuple(labels["size"])
+        width, _, depth = self.size
+        self.at = {
+            place: labels["pieces"][labels["cells"][place[0] + width * (place[2] + depth * place[1])]]
+            for place in itertools.product(*map(range, self.size))}
+        self.wraps = [boundary[side] == "periodic" for side in ("east", "top", "south")]
+
+    def violation(self, constraint):
+        """What is wrong, or None."""
+        places = {place for place in self.at if self._value(constraint, place) >= 0.5}
+        members = {place for place in places if self.at[place] in constraint["pieces"]}
+        return getattr(self, "_" + constraint["kind"])(constraint, places, members)
+
+    def _value(self, constraint, place):
+        if not {"box", "cells", "voxels", "mask"} & set(constraint):
+            return 1
+        value = 0
+        if "box" in constraint:
+            box = constraint["box"]
+            value = max(value, all(low <= p < high for p, low, high in
+                                   zip(place, box["min"], box["max"])))
+        if list(place) in constraint.get("cells", []):
+            value = 1
+        if "voxels" in constraint:
+            grid = constraint["voxels"]["size"]
+            x, y, z = (int((p + 0.5) / extent * other)
+                       for p, extent, other in zip(place, self.size, grid))
+            value = max(value, constraint["voxels"]["values"][x + grid[0] * (z + grid[2] * y)])
+        return value
+
+    def _beside(self, place):
+        for axis, step in itertools.product(range(3), (1, -1)):
+            beside = list(place)
+            beside[axis] += step
+            if self.wraps[axis]:
+                beside[axis] %= self.size[axis]
+            if 0 <= beside[axis] < self.size[axis]:
+                yield tuple(beside)
+
+    def _groups(self, members):
+        """Members that hang together through faces."""
+        left, groups = set(members), []
+        while left:
+            group, edge = set(), {left.pop()}
+            while edge:
+                group |= edge
+                edge = {beside for place in edge for beside in self._beside(place)} & left
+                left -= edge
+            groups.append(group)
+        return groups
+
+    def _fixed(self, constraint, places, members):
+        return None if places == members else f"others at {sorted(places - members)[:3]}"
+
+    def _forbidden(self, constraint, places, members):
+        return f"they stand at {sorted(members)[:3]}" if members else None
+
+    def _probability(self, constraint, places, members):
+        full = {place for place in members if self._value(constraint, place) == 1}
+        return f"removed ones at {sorted(full)[:3]}" if constraint["weight"] == 0 and full else None
+
+    def _count(self, constraint, places, members):
+        low, high = constraint.get("min", 0), constraint.get("max", len(self.at))
+        return None if low <= len(members) <= high else f"{len(members)} of them"
+
+    def _separation(self, constraint, places, members):
+        for a, b in itertools.combinations(sorted(members), 2):
+            steps = sum(min(abs(p - q), extent - abs(p - q)) if wraps else abs(p - q)
+                        for p, q, extent, wraps in zip(a, b, self.size, self.wraps))
+            if steps < constraint["distance"]:
+                return f"{a} and {b} are {steps} apart"
+        return None
+
+    def _max_run(self, constraint, places, members):
+        for axis in ([0, 1, 2] if "axis" not in constraint else ["xyz".index(constraint["axis"])]):
+            for start in members:
+                place, length = list(start), 0
+                while tuple(place) in members and length < self.size[axis]:
+                    length += 1
+                    place[axis] += 1
+                    if self.wraps[axis]:
+                        place[axis] %= self.size[axis]
+                if length > constraint["max"]:
+                    return f"{length} in a row from {start}"
+        return None
+
+    def _connected(self, constraint, places, members):
+        groups = self._groups(members)
+        return None if len(groups) <= 1 else f"{len(groups)} groups"
+
+    def _acyclic(self, constraint, places, members):
+        faces = sum(beside in members for place in members for beside in self._beside(place)) // 2
+        return None if faces == len(members) - len(self._groups(members)) else "there is a ring"
+
+    def _path(self, constraint, places, members):
+        ends = {tuple(constraint["from"]), tuple(constraint["to"])}
+        linked = any(ends <= group for group in self._groups(members))
+        return None if linked else "no way between the ends"
