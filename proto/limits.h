@@ -13,6 +13,12 @@ struct JsonLimits {
     std::size_t string_bytes_max = std::size_t{32} << 20;
 };
 
+// What the image of a mask may be.
+struct MaskLimits {
+    std::size_t text_bytes_max = std::size_t{1} << 20;  // of the whole data: URI
+    std::int32_t side_pixels_max = 4096;                // as many as a model has cells
+};
+
 // What one request may ask for.
 struct RequestLimits {
     JsonLimits json;
