@@ -1,6 +1,10 @@
 #include "proto/constraint_codec.h"
 
+#include "proto/image_mask.h"
+
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -69,6 +73,20 @@ std::optional<discrete::Voxels> read_voxels(const Value& value, const RequestLim
     return voxels;
 }
 
+std::optional<discrete::Mask> read_mask(const Value& value, const RequestLimits& limits) {
+    if (!value.json().is_string()) {
+        value.fault("must be an image: a data: URI of a PNG");
+        return std::nullopt;
+    }
+    const auto& text = value.json().get_ref<const std::string&>();
+    auto image = decode_mask(text, limits.mask);
+    if (!image) {
+        value.fault(image.error().message, image.error().code == ErrorCode::kTooLarge);
+        return std::nullopt;
+    }
+    return discrete::Mask{image->width, image->height, std::move(image->values), text};
+}
+
 Region read_region(ObjectReader& reader, const RequestLimits& limits) {
     Region region;
     if (const auto box = reader.optional("box")) {
@@ -76,6 +94,9 @@ Region read_region(ObjectReader& reader, const RequestLimits& limits) {
     }
     if (const auto cells = reader.optional("cells")) {
         region.cells = read_cells(*cells, limits);
+    }
+    if (const auto mask = reader.optional("mask")) {
+        region.mask = read_mask(*mask, limits);
     }
     if (const auto voxels = reader.optional("voxels")) {
         region.voxels = read_voxels(*voxels, limits);
@@ -195,6 +216,9 @@ void write_region(const Region& region, OrderedJson& written) {
         }
         written["cells"] = std::move(cells);
     }
+    if (region.mask) {
+        written["mask"] = region.mask->source;
+    }
     if (region.voxels) {
         const GridSize size = region.voxels->size;
         written["voxels"] = {
@@ -245,6 +269,18 @@ std::vector<Constraint> read_constraints(const Value& value, const RequestLimits
     std::vector<Constraint> constraints;
     const auto values = value.array(0, limits.constraints_max);
     if (!values) {
+        return constraints;
+    }
+    // Masks are counted before any is unpacked.
+    const auto has_mask = [](const Value& one) {
+        return one.json().is_object() && one.json().contains("mask");
+    };
+    if (std::count_if(values->begin(), values->end(), has_mask) >
+        static_cast<std::ptrdiff_t>(limits.masks_max)) {
+        value.fault(
+            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
+            true
+        );
         return constraints;
     }
     std::size_t member_rules = 0;

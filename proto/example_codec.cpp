@@ -1,11 +1,10 @@
 #include "proto/example_codec.h"
 
+#include "proto/base64.h"
 #include "proto/discrete_codec.h"
 #include "proto/json.h"
 #include "solver/discrete/default_kit.h"
 #include "solver/mesh/glb_reader.h"
-
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
@@ -22,26 +21,6 @@ using discrete::Piece;
 
 using LabelOfName = std::unordered_map<std::string, Label>;
 
-// The bytes of a base64 text; false when it is none.
-bool decode_base64(std::string_view text, std::vector<std::byte>& bytes) {
-    if (text.empty() || text.size() % 4 != 0 ||
-        text.find_first_of(" \t\r\n") != std::string_view::npos) {
-        return false;
-    }
-    bytes.resize(text.size() / 4 * 3);
-    const int length = EVP_DecodeBlock(
-        reinterpret_cast<unsigned char*>(bytes.data()),
-        reinterpret_cast<const unsigned char*>(text.data()),
-        static_cast<int>(text.size())
-    );
-    if (length < 0) {
-        return false;
-    }
-    const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
-    bytes.resize(static_cast<std::size_t>(length) - padding);
-    return true;
-}
-
 std::optional<Kit> read_meshes(const Value& value, const RequestLimits& limits) {
     const auto text = value.string(limits.json.string_bytes_max);
     if (!text) {
@@ -53,14 +32,14 @@ std::optional<Kit> read_meshes(const Value& value, const RequestLimits& limits) 
         if (!text->starts_with(prefix)) {
             continue;
         }
-        std::vector<std::byte> bytes;
-        if (!decode_base64(std::string_view(*text).substr(prefix.size()), bytes)) {
+        const auto bytes = decode_base64(std::string_view(*text).substr(prefix.size()));
+        if (!bytes) {
             value.fault("the data: URI is not base64");
             return std::nullopt;
         }
         GlbReadLimits glb_limits;
         glb_limits.bytes_max = limits.glb_bytes_max;
-        auto kit = read_glb(bytes, glb_limits);
+        auto kit = read_glb(*bytes, glb_limits);
         if (!kit) {
             value.fault(kit.error().message);
             return std::nullopt;

@@ -13,6 +13,12 @@ struct JsonLimits {
     std::size_t string_bytes_max = std::size_t{32} << 20;
 };
 
+// What the image of a mask may be.
+struct MaskLimits {
+    std::size_t text_bytes_max = std::size_t{1} << 20;  // of the whole data: URI
+    std::int32_t side_pixels_max = 2048;
+};
+
 // What one request may ask for.
 struct RequestLimits {
     JsonLimits json;
@@ -26,6 +32,8 @@ struct RequestLimits {
     std::size_t tags_max = 32;
     std::size_t constraints_max = 1000;
     std::size_t member_rules_max = 32;   // constraints that take memory for every cell
+    std::size_t masks_max = 16;
+    MaskLimits mask;
     std::size_t voxels_max = 1'000'000;  // values of one constraint
     std::int32_t separation_max = 64;    // steps; its cost goes with the cube
     double deadline_seconds_max = 3600;

@@ -4,6 +4,7 @@
 
 #include "proto/example_codec.h"
 #include "proto/frame.h"
+#include "proto/image_mask.h"
 #include "proto/job_request.h"
 #include "server/http/head_check.h"
 #include "server/http/message.h"
@@ -12,6 +13,7 @@
 #include "solver/examples/built_in.h"
 #include "solver/mesh/glb_reader.h"
 #include "solver/mesh/glb_writer.h"
+#include "tests/support/png_file.h"
 
 #include <gtest/gtest.h>
 
@@ -163,6 +165,54 @@ TEST(Fuzz, Frames) {
         }
         return decoded.has_value();
     });
+}
+
+bool is_mask(const std::string& text) {
+    const auto image = proto::decode_mask(text);
+    if (image) {
+        EXPECT_GT(image->width, 0);
+        EXPECT_GT(image->height, 0);
+        EXPECT_EQ(
+            image->values.size(),
+            static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height)
+        );
+    } else {
+        EXPECT_FALSE(image.error().message.empty());
+    }
+    return image.has_value();
+}
+
+// A palette with transparent colours and indices below a byte, and samples of 16 bits with alpha.
+std::vector<std::string> masks() {
+    testing::PngPicture palette{
+        .width = 9, .height = 7, .color_type = PNG_COLOR_TYPE_PALETTE, .bit_depth = 2};
+    testing::PngPicture colours{
+        .width = 9, .height = 7, .color_type = PNG_COLOR_TYPE_RGB_ALPHA, .bit_depth = 16};
+    RandomStream random({0, 0, 0, 6});
+    for (std::size_t i = 0; i < 9 * 7; ++i) {
+        palette.samples.push_back(random.below(3));
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            colours.samples.push_back(random.below(65536));
+        }
+    }
+    palette.palette = {{0, 0, 0}, {255, 0, 0}, {9, 99, 199}};
+    palette.palette_alphas = {0, 128};
+    palette.is_interlaced = true;
+    return {testing::write_png(palette), testing::write_png(colours)};
+}
+
+TEST(Fuzz, Masks) {
+    for (const std::string& png : masks()) {
+        fuzz(testing::png_uri(png), 6, is_mask);
+    }
+}
+
+TEST(Fuzz, MasksBehindTrueChecksums) {
+    for (const std::string& png : masks()) {
+        fuzz(png, 7, [](const std::string& changed) {
+            return is_mask(testing::png_uri(testing::with_true_checksums(changed)));
+        });
+    }
 }
 
 TEST(Fuzz, RequestTargetsAndHeads) {

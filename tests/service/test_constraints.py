@@ -8,7 +8,7 @@ import re
 import pytest
 
 from checks import assert_faults, assert_fits, job_request, make_job
-from constraint_oracle import Oracle
+from constraint_oracle import Oracle, grey_png
 
 _GUIDE = pathlib.Path(__file__).parents[2] / "proto" / "constraints.md"
 _REQUESTS = [json.loads(text) for text in
@@ -108,6 +108,10 @@ RED = {"pieces": ["red"]}
      ["/voxels/values/0"]),
     ({"kind": "fixed", **RED, "voxels": {"size": [0, 1, 1], "values": []}},
      ["/voxels/size/0", "/voxels/values"]),
+    ({"kind": "fixed", **RED, "mask": [[1]]}, ["/mask"]),
+    ({"kind": "fixed", **RED, "mask": "data:image/jpeg;base64,AAAA"}, ["/mask"]),
+    ({"kind": "fixed", **RED, "mask": grey_png([[1]])[:-8]}, ["/mask"]),
+    ({"kind": "fixed", **RED, "mask": grey_png([[1]]).replace(",", ",?")}, ["/mask"]),
 ], ids=lambda value: json.dumps(value)[:60])
 def test_faults_are_named_with_their_place(server, constraint, expected):
     request = job_request({"constraints": [constraint]})
@@ -120,6 +124,31 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
     assert make_job(server, {"constraints": [one] * 32})["state"] == "succeeded"
     request = job_request({"constraints": [one] * 33})
     assert_faults(server.request("POST", "/v1/jobs", request), request, ["/parameters/constraints"])
+
+
+def test_masks_are_limited_in_size_and_number(server):
+    fits = {"kind": "probability", **RED, "weight": 1, "mask": grey_png([[0] * 2048])}
+    assert make_job(server, {"constraints": [fits] * 16})["state"] == "succeeded"
+    for constraints, place in (([fits] * 17, ""),
+                               ([{**fits, "mask": grey_png([[0] * 2049])}], "/0/mask")):
+        request = job_request({"constraints": constraints})
+        answer = server.request("POST", "/v1/jobs", request)
+        problem = assert_faults(answer, request, ["/parameters/constraints" + place])
+        assert problem["type"] == "/problems/too-large"
+
+
+def test_a_mask_lies_with_its_first_row_in_the_north_and_its_first_pixel_in_the_west(server):
+    tiles = ["dark", "light"]
+    example = {"kind": "discrete", "name": "any", "pieces": [{"name": name} for name in tiles],
+               "adjacency": {axis: [[a, b] for a in tiles for b in tiles] for axis in "xyz"}}
+    rows = [[255, 0, 0], [0, 0, 255]]
+    job = make_job(server, {"size": [6, 2, 4], "constraints": [
+        {"kind": "fixed", "pieces": ["light"], "mask": grey_png(rows)},
+        {"kind": "fixed", "pieces": ["dark"],
+         "mask": grey_png([[255 - value for value in row] for row in rows])}]}, example=example)
+    cells = server.get(f"/v1/jobs/{job['id']}/labels.json").json()["cells"]
+    floor = [1, 1, 0, 0, 0, 0] * 2 + [0, 0, 0, 0, 1, 1] * 2
+    assert cells == floor * 2
 
 
 @pytest.mark.parametrize("constraints, kind, words", [
