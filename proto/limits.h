@@ -16,7 +16,7 @@ struct JsonLimits {
 // What the image of a mask may be.
 struct MaskLimits {
     std::size_t text_bytes_max = std::size_t{1} << 20;  // of the whole data: URI
-    std::int32_t side_pixels_max = 2048;
+    std::int32_t side_pixels_max = 1024;
 };
 
 // What one request may ask for.
@@ -31,7 +31,7 @@ struct RequestLimits {
     std::size_t name_characters_max = 128;
     std::size_t tags_max = 32;
     std::size_t constraints_max = 1000;
-    std::size_t member_rules_max = 32;   // constraints that take memory for every cell
+    std::size_t member_rules_max = 32;  // constraints that take memory for every cell
     std::size_t masks_max = 16;
     MaskLimits mask;
     std::size_t voxels_max = 1'000'000;  // values of one constraint

@@ -127,10 +127,10 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
 
 
 def test_masks_are_limited_in_size_and_number(server):
-    fits = {"kind": "probability", **RED, "weight": 1, "mask": grey_png([[0] * 2048])}
+    fits = {"kind": "probability", **RED, "weight": 1, "mask": grey_png([[0] * 1024])}
     assert make_job(server, {"constraints": [fits] * 16})["state"] == "succeeded"
     for constraints, place in (([fits] * 17, ""),
-                               ([{**fits, "mask": grey_png([[0] * 2049])}], "/0/mask")):
+                               ([{**fits, "mask": grey_png([[0] * 1025])}], "/0/mask")):
         request = job_request({"constraints": constraints})
         answer = server.request("POST", "/v1/jobs", request)
         problem = assert_faults(answer, request, ["/parameters/constraints" + place])

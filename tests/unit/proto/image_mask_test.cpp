@@ -265,11 +265,11 @@ TEST(ImageMask, LimitsHoldAtTheirEdge) {
              .samples = std::vector<std::uint32_t>(std::size_t{width} * height)}
         ));
     };
-    EXPECT_EQ(refusal(of_size(4096, 1)), "accepted");
-    EXPECT_EQ(refusal(of_size(1, 4096)), "accepted");
-    EXPECT_EQ(refusal(of_size(4097, 1)), "the image is 4097 pixels wide; the limit is 4096");
-    EXPECT_EQ(refusal(of_size(1, 5000)), "the image is 5000 pixels high; the limit is 4096");
-    EXPECT_EQ(decode_mask(of_size(4097, 1)).error().code, ErrorCode::kTooLarge);
+    EXPECT_EQ(refusal(of_size(1024, 1)), "accepted");
+    EXPECT_EQ(refusal(of_size(1, 1024)), "accepted");
+    EXPECT_EQ(refusal(of_size(1025, 1)), "the image is 1025 pixels wide; the limit is 1024");
+    EXPECT_EQ(refusal(of_size(1, 5000)), "the image is 5000 pixels high; the limit is 1024");
+    EXPECT_EQ(decode_mask(of_size(1025, 1)).error().code, ErrorCode::kTooLarge);
 
     const std::string text = of_size(3, 2);
     MaskLimits limits;
@@ -294,16 +294,16 @@ TEST(ImageMask, LimitsHoldAtTheirEdge) {
 TEST(ImageMask, AShortTextMayHoldTheLargestImage) {
     for (const bool is_interlaced : {false, true}) {
         const std::string text = png_uri(write_png(
-            {.width = 4096,
-             .height = 4096,
+            {.width = 1024,
+             .height = 1024,
              .bit_depth = 1,
              .is_interlaced = is_interlaced,
-             .samples = std::vector<std::uint32_t>(4096 * 4096, 1)}
+             .samples = std::vector<std::uint32_t>(1024 * 1024, 1)}
         ));
         EXPECT_LT(text.size(), 20'000U);
         const auto image = decode_mask(text);
         ASSERT_TRUE(image) << image.error().message;
-        EXPECT_EQ(image->values, Values(4096 * 4096, 255));
+        EXPECT_EQ(image->values, Values(1024 * 1024, 255));
     }
 }
 
@@ -314,12 +314,12 @@ TEST(ImageMask, ASizeThatIsOnlyClaimedIsRefusedBeforeAnythingIsMade) {
         claim.replace(16, 8, big_endian(width) + big_endian(height));
         return refusal(png_uri(with_true_checksums(claim)));
     };
-    EXPECT_EQ(claiming(0xFFFFFFFF, 1), "the image is 4294967295 pixels wide; the limit is 4096");
-    EXPECT_EQ(claiming(1, 0x7FFFFFFF), "the image is 2147483647 pixels high; the limit is 4096");
+    EXPECT_EQ(claiming(0xFFFFFFFF, 1), "the image is 4294967295 pixels wide; the limit is 1024");
+    EXPECT_EQ(claiming(1, 0x7FFFFFFF), "the image is 2147483647 pixels high; the limit is 1024");
     EXPECT_EQ(claiming(0, 1), "the image is 0 pixels wide");
     EXPECT_EQ(claiming(1, 0), "the image is 0 pixels high");
     EXPECT_EQ(claiming(1, 2), "the PNG is broken: Not enough image data");
-    EXPECT_EQ(claiming(4096, 4096), "the PNG is broken: Not enough image data");
+    EXPECT_EQ(claiming(1024, 1024), "the PNG is broken: Not enough image data");
 }
 
 TEST(ImageMask, NamesWhatIsWrong) {
