@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -88,10 +89,13 @@ class NaiveGrid {
         if (!grid.propagate()) {
             return 0;
         }
-        const auto open = std::find_if(grid.cells_.begin(), grid.cells_.end(), [](auto set) {
-            return (set & (set - 1)) != 0;
-        });
-        if (open == grid.cells_.end()) {
+        // The cell with the fewest labels of those with several.
+        const auto open = std::min_element(
+            grid.cells_.begin(),
+            grid.cells_.end(),
+            [](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); }
+        );
+        if (rank(*open) == rank(1)) {
             return 1;
         }
         std::uint64_t count = 0;
@@ -108,16 +112,20 @@ class NaiveGrid {
     [[nodiscard]] bool has_completion() const { return count_completions(1) > 0; }
 
   private:
+    // Sets by size, those of one label last.
+    static int rank(std::uint32_t set) {
+        const int count = std::popcount(set);
+        return count > 1 ? count : 33;
+    }
+
     [[nodiscard]] std::size_t index(const Cell& cell) const {
         return static_cast<std::size_t>(cell.x + size_.x * (cell.z + size_.z * cell.y));
     }
 
     static std::uint32_t joined(const std::array<std::uint32_t, 32>& rows, std::uint32_t set) {
         std::uint32_t all = 0;
-        for (std::size_t label = 0; label < rows.size(); ++label) {
-            if ((set >> label & 1U) != 0) {
-                all |= rows[label];
-            }
+        for (; set != 0; set &= set - 1) {
+            all |= rows[static_cast<std::size_t>(std::countr_zero(set))];
         }
         return all;
     }

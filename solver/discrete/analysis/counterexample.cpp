@@ -15,11 +15,15 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// What RandomKey::purpose says of the streams drawn here.
-constexpr std::uint32_t kPurposeCounterexample = 2;
+// What RandomKey::purpose says of the streams drawn here: this, and the next in the second pass.
+constexpr std::uint32_t kPurposeCounterexample = 16;
+constexpr std::uint32_t kMoreRuns = 4;
 
 // Steps for the proof that a shorter prefix has no completion either.
-constexpr std::uint64_t kShortenSteps = 4096;
+constexpr std::uint64_t kShortenSteps = 256;
+
+// Steps to tell whether a cell can be left out.
+constexpr std::uint64_t kCoreSteps = 64;
 
 // Boxes by rising volume: all shapes while small, then only those as long as wide.
 std::vector<GridSize> boxes(const Transitions& transitions) {
@@ -92,12 +96,12 @@ class BoxRuns {
                     break;
             }
             if (!seen) {
-                seen = {box_, placed, choice};
+                seen = {box_, placed, choice, {}};
             }
             if (!catalog_.remove(site, choice.label) ||
                 catalog_.propagate(work_.stop()) == Propagation::kContradiction) {
                 // Neither the label nor any other can follow what was placed.
-                return Counterexample{box_, shorten(std::move(placed)), std::nullopt};
+                return Counterexample{box_, shorten(std::move(placed)), std::nullopt, {}};
             }
         }
         return seen;
@@ -158,33 +162,89 @@ class BoxRuns {
     bool is_possible_ = false;
 };
 
-}  // namespace
+// Leaves out one cell after the other, the first ones first: they are the farthest from the choice.
+std::vector<PlacedLabel> find_core(
+    const Transitions& transitions, const Counterexample& counterexample, Work& work
+) {
+    std::vector<PlacedLabel> core = counterexample.cells;
+    if (counterexample.choice) {
+        core.push_back(*counterexample.choice);
+    }
+    for (std::size_t i = 0; i < core.size();) {
+        const PlacedLabel left_out = core[i];
+        const auto place = core.begin() + static_cast<std::ptrdiff_t>(i);
+        core.erase(place);
+        const Completion completion = work.with_share(kCoreSteps, [&](Work& share) {
+            return find_completion(transitions, counterexample.box, core, share);
+        });
+        if (completion != Completion::kNone || left_out == counterexample.choice) {
+            core.insert(core.begin() + static_cast<std::ptrdiff_t>(i), left_out);
+            ++i;
+        }
+    }
+    if (counterexample.choice) {
+        core.pop_back();
+    }
+    return core;
+}
 
-std::optional<Counterexample> find_counterexample(
-    const Transitions& transitions, const CounterexampleSearch& search, Work& work
+// One pass over the boxes: the first counterexample without a choice, or else the first with one.
+std::optional<Counterexample> search_boxes(
+    const Transitions& transitions,
+    std::uint32_t pass,
+    const CounterexampleSearch& search,
+    Work& work
 ) {
     std::optional<Counterexample> with_choice;
-    if (transitions.labels.empty()) {
-        return with_choice;
-    }
     std::uint32_t number = 0;
     for (const GridSize& box : boxes(transitions)) {
+        if (box.cell_count() > search.box_cells_max || !work.take()) {
+            break;
+        }
         BoxRuns runs(transitions, box, work);
         ++number;
         for (std::uint32_t run = 0; runs.is_possible() && run < search.runs; ++run) {
-            auto seen = runs.run(RandomStream({search.seed, number, run, kPurposeCounterexample}));
+            const RandomKey key = {search.seed, number, run, kPurposeCounterexample + pass};
+            auto seen = runs.run(RandomStream(key));
             if (seen && !seen->choice) {
                 return seen;
             }
             if (seen && !with_choice) {
                 with_choice = std::move(seen);
             }
-            if (work.left() == 0 || work.stop().stop_requested()) {
-                return with_choice;
-            }
         }
     }
     return with_choice;
+}
+
+}  // namespace
+
+std::optional<Counterexample> find_counterexample(
+    const Transitions& transitions, const CounterexampleSearch& search, Work& work
+) {
+    if (transitions.labels.empty()) {
+        return std::nullopt;
+    }
+    // What is kept back is enough to make the answer smaller.
+    const std::uint64_t steps_kept = work.left() / 4;
+    std::optional<Counterexample> found;
+    for (std::uint32_t pass = 0; pass < 2 && work.left() > steps_kept; ++pass) {
+        CounterexampleSearch of_pass = search;
+        of_pass.runs *= pass == 0 ? 1 : kMoreRuns;
+        auto seen = work.with_share(work.left() - steps_kept, [&](Work& share) {
+            return search_boxes(transitions, pass, of_pass, share);
+        });
+        if (seen && (!found || !seen->choice)) {
+            found = std::move(seen);
+        }
+        if (found && !found->choice) {
+            break;
+        }
+    }
+    if (found) {
+        found->core = find_core(transitions, *found, work);
+    }
+    return found;
 }
 
 }  // namespace modelsynth::discrete

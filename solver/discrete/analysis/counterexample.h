@@ -5,6 +5,7 @@
 #include "solver/discrete/analysis/transitions.h"
 #include "solver/discrete/analysis/work.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -19,23 +20,29 @@ namespace modelsynth::discrete {
 // With `choice`, the catalog offers that label for the next cell, and no model completes `cells`
 // with it (Fig. 3.5): C differs from C*. Arc consistency notices as soon as the label is placed,
 // and a search that tries another label then, as the project's does, goes on.
+//
+// `core` has those of the cells that alone, with the choice if there is one, already have no
+// completion: the same partial model without what does not matter. It is as small as a little work
+// can make it, and what is best shown.
 struct Counterexample {
     GridSize box;
     std::vector<PlacedLabel> cells;  // in the order in which they were placed
     std::optional<PlacedLabel> choice;
+    std::vector<PlacedLabel> core;  // in that order too
 };
 
 struct CounterexampleSearch {
-    std::uint32_t runs = 16;  // in every box
+    std::uint32_t runs = 16;  // in every box, and four times as many the second time
+    std::size_t box_cells_max = 1000;
     std::uint64_t seed = 0;
 };
 
 // Looks for a counterexample by runs of Algorithm 3.1 with random choices, in boxes of rising
-// size: the box of the answer is the smallest in which one was seen. One without `choice` is
-// looked for longest; where none is seen, the first one with it is the answer. The cells of one
-// without are as few as the work allows.
+// size, twice over: the box of the answer is the smallest in which one was seen. One without
+// `choice` is looked for until the end; where none is seen, the first one with it is the answer.
+// The cells of one without are as few as the work allows.
 // Ensures:  deterministic in its arguments. Nothing when none was seen, which proves nothing.
-// Cost:     two steps a cell; boxes have up to 1 000 cells (up to 256 in the plane). Thread-safe.
+// Cost:     a step a cell at most; in the plane boxes have no more than 256 cells. Thread-safe.
 [[nodiscard]] std::optional<Counterexample> find_counterexample(
     const Transitions& transitions, const CounterexampleSearch& search, Work& work
 );

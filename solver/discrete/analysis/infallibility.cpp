@@ -1,11 +1,14 @@
 #include "solver/discrete/analysis/infallibility.h"
 
+#include "solver/core/catalog.h"
+#include "solver/core/grid_topology.h"
 #include "solver/discrete/analysis/corner_condition.h"
 #include "solver/discrete/analysis/region_induction.h"
 #include "solver/discrete/analysis/work.h"
 
 #include <algorithm>
-#include <tuple>
+#include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -47,6 +50,26 @@ std::vector<GridSize> regions(const Transitions& transitions) {
         return a.cell_count() < b.cell_count();
     });
     return all;
+}
+
+// The smallest cube that arc consistency alone leaves nothing for. What is larger holds it.
+std::optional<GridSize> find_impossible(const Transitions& transitions, Work& work) {
+    constexpr std::array<std::int32_t, 8> kSides = {2, 3, 4, 5, 6, 8, 12, 16};
+    for (const std::int32_t side : kSides) {
+        if (transitions.labels.empty() || !work.take()) {
+            break;
+        }
+        const auto extent = [&](std::size_t axis) { return transitions.open[axis] ? side : 1; };
+        const GridSize size = {extent(0), extent(1), extent(2)};
+        const GridTopology topology(size);
+        Catalog<GridTopology, 0> catalog(topology, transitions.relations);
+        catalog.fill(transitions.labels.words());
+        catalog.enqueue_all();
+        if (catalog.propagate(work.stop()) == Propagation::kContradiction) {
+            return size;
+        }
+    }
+    return std::nullopt;
 }
 
 void set_infallible(
@@ -134,7 +157,12 @@ Result<InfallibilityVerdict> judge_infallibility(
 ) {
     Work work(options.steps_max, stop);
     InfallibilityVerdict verdict;
+    verdict.impossible_from = find_impossible(transitions, work);
     judge(transitions, options.search, work, verdict);
+    if (verdict.impossible_from) {
+        verdict.description +=
+            " No model of " + text_of(*verdict.impossible_from) + " cells or more exists.";
+    }
     if (stop.stop_requested()) {
         return tl::unexpected(Error{ErrorCode::kCancelled, "the analysis was stopped", {}});
     }
@@ -146,20 +174,15 @@ std::string describe(const Counterexample& counterexample, const Example& exampl
     const auto text = [&example](const PlacedLabel& placed) {
         return "\"" + example.pieces[placed.label].name + "\" at " + text_of(placed.cell);
     };
-    std::string sentence = "In a model of " + text_of(counterexample.box) + " cells, ";
-    for (std::size_t i = 0; i < counterexample.cells.size(); ++i) {
-        sentence += (i == 0 ? "" : ", ") + text(counterexample.cells[i]);
+    std::string sentence = "In a model of " + text_of(counterexample.box) + " cells";
+    for (std::size_t i = 0; i < counterexample.core.size(); ++i) {
+        sentence += (i == 0 ? " with " : ", ") + text(counterexample.core[i]);
     }
-    if (!counterexample.choice) {
-        return sentence + (counterexample.cells.empty()
-                               ? "every cell has pieces to choose from, but nothing fills it."
-                               : " leave pieces to choose from in every cell, but nothing "
-                                 "completes them.");
+    if (counterexample.choice) {
+        return sentence + ", " + text(*counterexample.choice) +
+               " seems possible, but nothing completes it.";
     }
-    return sentence + (counterexample.cells.empty() ? "" : " allow ") +
-           text(*counterexample.choice) +
-           (counterexample.cells.empty() ? " is allowed" : " by the catalog") +
-           ", but nothing completes it.";
+    return sentence + ", every cell has pieces that seem possible, but nothing completes them.";
 }
 
 }  // namespace modelsynth::discrete

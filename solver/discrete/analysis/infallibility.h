@@ -40,8 +40,12 @@ struct InfallibilityVerdict {
     InfallibilityProof proof = InfallibilityProof::kNone;
     std::optional<GridSize> region;                // for kRegion: cells of the region
     std::optional<Counterexample> counterexample;  // for kFallible
-    std::uint64_t steps = 0;                       // of work
-    std::string description;                       // a sentence or two for a person
+    // From this size on in every direction there is no model at all, where arc consistency proves
+    // it: a size of up to 16 cells along each axis. Then "infallible" says only that such models
+    // are never begun.
+    std::optional<GridSize> impossible_from;
+    std::uint64_t steps = 0;  // of work
+    std::string description;  // a sentence or two for a person
 };
 
 struct InfallibilityOptions {
@@ -58,7 +62,7 @@ struct InfallibilityOptions {
     const Transitions& transitions, const InfallibilityOptions& options, const std::stop_token& stop
 );
 
-// What the cells of a counterexample are, with the names of the example's pieces: one sentence.
+// What the core of a counterexample is, with the names of the example's pieces: one sentence.
 [[nodiscard]] std::string describe(const Counterexample& counterexample, const Example& example);
 
 }  // namespace modelsynth::discrete

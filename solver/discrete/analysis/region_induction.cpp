@@ -88,6 +88,9 @@ class WindowInduction {
     }
 
     ProofOutcome prove() {
+        if (!work_.take()) {
+            return ProofOutcome::kNoWork;
+        }
         const Propagation start = catalog_.propagate(work_.stop());
         if (start != Propagation::kConsistent) {
             return start == Propagation::kStopped ? ProofOutcome::kNoWork : ProofOutcome::kProved;

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,39 +24,14 @@ namespace modelsynth::discrete {
 namespace {
 
 using testing::make_example;
+using testing::make_tiny_example;
 using testing::NaiveGrid;
 using testing::NaiveRules;
 
-constexpr std::uint64_t kPlanarCases = 1500;
-constexpr std::uint64_t kSpatialCases = 400;
-
-// Two to four labels. Odd seeds: what stands on a small grid. Even ones: any pairs at all, which
-// grids of that size could not hold.
-Example random_example(std::uint64_t seed, bool is_planar) {
-    RandomStream random({seed, 0, 0, 98});
-    const auto below = [&random](std::uint32_t bound) { return random.below(bound); };
-    const std::uint32_t labels = 2 + below(is_planar ? 3 : 2);
-    if (seed % 2 == 1) {
-        const auto extent = [&] { return static_cast<std::int32_t>(2 + below(3)); };
-        const GridSize size = {extent(), is_planar ? 1 : extent(), extent()};
-        std::vector<Label> cells(size.cell_count());
-        for (Label& cell : cells) {
-            cell = static_cast<Label>(below(labels));
-        }
-        return make_example(size, std::move(cells), labels);
-    }
-    Example example = make_example({0, 0, 0}, {}, labels);
-    const std::uint32_t share = 2 + below(7);  // of ten pairs
-    for (const std::uint8_t axis : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}}) {
-        for (Label a = 0; a < labels; ++a) {
-            for (Label b = 0; b < labels; ++b) {
-                if ((axis != 1 || !is_planar) && below(10) < share) {
-                    example.adjacency.push_back({axis, a, b});
-                }
-            }
-        }
-    }
-    return example;
+// How many random examples; MODELSYNTH_CASES asks for more or fewer.
+std::uint64_t case_count(std::uint64_t usual) {
+    const char* asked = std::getenv("MODELSYNTH_CASES");
+    return asked == nullptr ? usual : std::strtoull(asked, nullptr, 10);
 }
 
 // Cells in the order that the verdict is about.
@@ -165,6 +141,20 @@ void expect_counterexample(
         grid.at(choice.cell) = 1U << choice.label;
     }
     ASSERT_FALSE(grid.has_completion()) << "seed " << seed;
+    // So have those that matter alone.
+    NaiveGrid core(rules, counterexample.box);
+    std::size_t next = 0;
+    for (const PlacedLabel& placed : counterexample.core) {
+        while (next < counterexample.cells.size() && counterexample.cells[next] != placed) {
+            ++next;
+        }
+        ASSERT_LT(next, counterexample.cells.size()) << "seed " << seed;
+        core.at(placed.cell) = 1U << placed.label;
+    }
+    if (counterexample.choice) {
+        core.at(counterexample.choice->cell) = 1U << counterexample.choice->label;
+    }
+    ASSERT_FALSE(core.has_completion()) << "seed " << seed;
 }
 
 std::string text_of(const InfallibilityVerdict& verdict) {
@@ -186,6 +176,7 @@ InfallibilityVerdict verdict_of(const Example& example, std::uint64_t steps_max)
     InfallibilityOptions options;
     options.steps_max = steps_max;
     options.search.runs = 4;
+    options.search.box_cells_max = 64;
     return judge_infallibility(read_transitions(example), options, {}).value();
 }
 
@@ -198,7 +189,7 @@ std::map<std::string, std::size_t> check_verdicts(
 ) {
     std::map<std::string, std::size_t> seen;
     for (std::uint64_t seed = 0; seed < cases; ++seed) {
-        const Example example = random_example(seed, is_planar);
+        const Example example = make_tiny_example(seed, is_planar);
         const InfallibilityVerdict verdict = verdict_of(example, 20'000);
         ++seen[text_of(verdict)];
         EXPECT_FALSE(verdict.description.empty());
@@ -218,8 +209,9 @@ std::map<std::string, std::size_t> check_verdicts(
 }
 
 TEST(Infallibility, PlanarVerdictsHoldAgainstBruteForce) {
+    const std::uint64_t cases = case_count(2000);
     const auto seen = check_verdicts(
-        kPlanarCases,
+        cases,
         true,
         {{2, 1, 2}, {2, 1, 3}, {3, 1, 2}, {3, 1, 3}, {4, 1, 2}, {2, 1, 4}},
         {{4, 1, 4}, {6, 1, 6}, {3, 1, 9}, {9, 1, 3}}
@@ -231,17 +223,18 @@ TEST(Infallibility, PlanarVerdictsHoldAgainstBruteForce) {
           "large region",
           "fallible, noticed",
           "fallible, unnoticed"}) {
-        EXPECT_TRUE(seen.contains(each) && seen.at(each) >= 5) << each;
+        EXPECT_TRUE(seen.contains(each) && seen.at(each) > cases / 400) << each;
     }
 }
 
 TEST(Infallibility, SpatialVerdictsHoldAgainstBruteForce) {
+    const std::uint64_t cases = case_count(800);
     const auto seen = check_verdicts(
-        kSpatialCases, false, {{2, 2, 2}, {3, 2, 2}, {2, 3, 2}, {2, 2, 3}}, {{3, 3, 3}, {4, 4, 4}}
+        cases, false, {{2, 2, 2}, {3, 2, 2}, {2, 3, 2}, {2, 2, 3}}, {{3, 3, 3}, {4, 4, 4}}
     );
     for (const char* each :
          {"equation", "small region", "fallible, noticed", "fallible, unnoticed"}) {
-        EXPECT_TRUE(seen.contains(each) && seen.at(each) >= 3) << each;
+        EXPECT_TRUE(seen.contains(each) && seen.at(each) > cases / 400) << each;
     }
 }
 
@@ -253,8 +246,8 @@ TEST(Infallibility, EveryProofHoldsByItself) {
             return std::pair(a.x, a.z) < std::pair(b.x, b.z);
         }
     );
-    for (std::uint64_t seed = 0; seed < 400; ++seed) {
-        const Example example = random_example(seed, true);
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const Example example = make_tiny_example(seed, true);
         const Transitions transitions = read_transitions(example);
         if (transitions.open_count() < 2) {
             continue;
@@ -279,7 +272,7 @@ TEST(Infallibility, EveryProofHoldsByItself) {
 TEST(Infallibility, TheSmallestRegionProvesWhatTheEquationProves) {
     std::size_t by_equation = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
-        const Transitions transitions = read_transitions(random_example(seed, true));
+        const Transitions transitions = read_transitions(make_tiny_example(seed, true));
         Work work(1'000'000, {});
         if (transitions.open_count() == 2 &&
             check_corners(transitions, work) == ProofOutcome::kProved) {
@@ -339,7 +332,7 @@ TEST(Infallibility, InSpaceTheCornersOfCubesAreLookedAt) {
 TEST(Infallibility, IsUnknownWithoutWorkAndNeverAnythingElseWithMore) {
     std::size_t settled = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-        const Example example = random_example(seed, true);
+        const Example example = make_tiny_example(seed, true);
         Infallibility before = Infallibility::kUnknown;
         for (const std::uint64_t steps : {0U, 10U, 100U, 1'000U, 30'000U}) {
             const InfallibilityVerdict verdict = verdict_of(example, steps);
@@ -356,6 +349,18 @@ TEST(Infallibility, IsUnknownWithoutWorkAndNeverAnythingElseWithMore) {
         settled += std::size_t{before != Infallibility::kUnknown};
     }
     EXPECT_GT(settled, 30U);
+}
+
+TEST(Infallibility, TellsWhereThereIsNoModelAtAll) {
+    // Rows of three labels that end: 0 1 2, and no label follows 2.
+    const Example rows = make_example({3, 1, 2}, {0, 1, 2, 0, 1, 2}, 3);
+    const InfallibilityVerdict verdict = verdict_of(rows, 10'000);
+    EXPECT_EQ(verdict.impossible_from, (GridSize{4, 1, 4}));
+    EXPECT_NE(
+        verdict.description.find("No model of 4 x 1 x 4 cells or more exists."), std::string::npos
+    );
+    const Example pillars = testing::make_pillars();
+    EXPECT_EQ(verdict_of(pillars, 10'000).impossible_from, std::nullopt);
 }
 
 TEST(Infallibility, IsCancelledWhenAsked) {
@@ -379,25 +384,23 @@ TEST(Infallibility, TheOrderOfItsProofsIsTheOrderOfTheSearch) {
 
 TEST(Counterexample, IsToldWithTheNamesOfPieces) {
     const Example example = testing::make_pillars();
-    const std::string hidden = describe({{2, 1, 2}, {{{0, 0, 0}, 1}, {{0, 0, 1}, 2}}, {}}, example);
+    const std::vector<PlacedLabel> core = {{{0, 0, 0}, 1}, {{0, 0, 1}, 2}};
     EXPECT_EQ(
-        hidden,
-        "In a model of 2 x 1 x 2 cells, \"b\" at [0, 0, 0], \"c\" at [0, 0, 1] leave pieces to "
-        "choose from in every cell, but nothing completes them."
+        describe({{2, 1, 2}, core, {}, core}, example),
+        "In a model of 2 x 1 x 2 cells with \"b\" at [0, 0, 0], \"c\" at [0, 0, 1], every cell has "
+        "pieces that seem possible, but nothing completes them."
     );
-    const std::string noticed =
-        describe({{2, 1, 2}, {{{0, 0, 0}, 1}}, PlacedLabel{{0, 0, 1}, 3}}, example);
     EXPECT_EQ(
-        noticed,
-        "In a model of 2 x 1 x 2 cells, \"b\" at [0, 0, 0] allow \"d\" at [0, 0, 1] by the "
-        "catalog, but nothing completes it."
+        describe({{2, 1, 2}, core, PlacedLabel{{1, 0, 0}, 3}, {core[0]}}, example),
+        "In a model of 2 x 1 x 2 cells with \"b\" at [0, 0, 0], \"d\" at [1, 0, 0] seems possible, "
+        "but nothing completes it."
     );
 }
 
 TEST(Completion, AgreesWithBruteForce) {
     std::map<Completion, std::size_t> seen;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
-        const Example example = random_example(seed, seed % 4 < 2);
+        const Example example = make_tiny_example(seed, seed % 4 < 2);
         const Transitions transitions = read_transitions(example);
         RandomStream random({seed, 0, 0, 96});
         const GridSize box = {

@@ -111,7 +111,7 @@ TEST(LabelFacts, AgreeWithBruteForceOnWhatIsUnreachable) {
             unreachable += std::size_t{is_used && !is_left};
         }
     }
-    EXPECT_GT(unreachable, 20U);
+    EXPECT_GT(unreachable, 5U);
 }
 
 // A pillar brings its cap and the air around both: five cells on each of two floors. The ground
@@ -123,13 +123,14 @@ TEST(LabelFacts, FindLabelsThatCopyThePlaceTheyCameFrom) {
     EXPECT_EQ(facts.forced[0], (ForcedPatch{2, 5 * 2, set_of(example, {1, 2, 3}), true}));
     // The cap stands on the pillar.
     EXPECT_EQ(facts.forced[1], (ForcedPatch{3, 5 * 2, set_of(example, {1, 2, 3}), true}));
-    // With free sides they may stand at the bottom, and there is more to be known above.
+    // With free sides they may stand at the bottom. Then there is no ground anywhere, so no cap two
+    // floors up: all of that floor is known to be air.
     const LabelFacts free = facts_of(make_pillars(), {30, 5, 30});
     const auto pillar = std::find_if(free.forced.begin(), free.forced.end(), [](const auto& each) {
         return each.label == 2;
     });
     ASSERT_NE(pillar, free.forced.end());
-    EXPECT_EQ(*pillar, (ForcedPatch{2, 5 * 3, set_of(example, {1, 2, 3}), true}));
+    EXPECT_EQ(*pillar, (ForcedPatch{2, 5 * 2 + 21 * 21, set_of(example, {1, 2, 3}), false}));
     // A chequerboard is known from one of its cells.
     const Example chequers = make_example({2, 1, 2}, {0, 1, 1, 0}, 2);
     const LabelFacts chequered = facts_of(chequers, {7, 1, 9});

@@ -21,23 +21,12 @@ std::vector<SuccessPoint> measure(
 ) {
     Parameters parameters;
     parameters.order = order;
-    parameters.size = GridSize{40, example.size.y, 40};
+    parameters.size = GridSize{40, 1, 40};
     return measure_success(example, fill_defaults(parameters, example), options, {}).value();
 }
 
-// Lines that cross only at one of two kinds of knots which may not be neighbours in a row: made
-// whole, it fails the more often the larger it is.
-Example fallible() {
-    return make_example(
-        {5, 1, 5},
-        {0, 0, 1, 0, 0,  //
-         0, 0, 1, 0, 0,  //
-         2, 2, 3, 2, 2,  //
-         0, 0, 1, 0, 0,  //
-         0, 0, 4, 0, 0},
-        5
-    );
-}
+// Five labels that come to dead ends, the more often the larger the model.
+Example fallible() { return testing::make_tiny_example(28, true); }
 
 TEST(SuccessCurve, IsAllForAnInfallibleExampleInEveryOrder) {
     const Example chequers = make_example({2, 1, 2}, {0, 1, 1, 0}, 2);
@@ -68,10 +57,10 @@ TEST(SuccessCurve, FallsWithTheSizeOfAFallibleExample) {
     const auto points = measure(fallible(), {{2, 4, 6, 10, 20}, 50, 3});
     ASSERT_EQ(points.size(), 5U);
     EXPECT_EQ(points.front().successes, 50U);
-    EXPECT_LT(points.back().successes, points.front().successes);
-    EXPECT_TRUE(std::any_of(points.begin(), points.end(), [](const SuccessPoint& point) {
-        return point.successes > 0 && point.successes < point.runs;
-    }));
+    EXPECT_LT(points.back().successes, 20U);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        EXPECT_LT(points[i].successes, points[i - 1].successes);
+    }
 }
 
 TEST(SuccessCurve, IsAFunctionOfItsSeed) {
