@@ -15,9 +15,11 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// What RandomKey::purpose says of the streams drawn here: this, and the next in the second pass.
+// What RandomKey::purpose says of the streams drawn here: this, and the next ones in later
+// passes.
 constexpr std::uint32_t kPurposeCounterexample = 16;
-constexpr std::uint32_t kMoreRuns = 4;
+constexpr std::uint32_t kPasses = 3;
+constexpr std::uint32_t kMoreRuns = 4;  // in a pass than in the one before
 
 // Steps for the proof that a shorter prefix has no completion either.
 constexpr std::uint64_t kShortenSteps = 256;
@@ -228,9 +230,8 @@ std::optional<Counterexample> find_counterexample(
     // What is kept back is enough to make the answer smaller.
     const std::uint64_t steps_kept = work.left() / 4;
     std::optional<Counterexample> found;
-    for (std::uint32_t pass = 0; pass < 2 && work.left() > steps_kept; ++pass) {
-        CounterexampleSearch of_pass = search;
-        of_pass.runs *= pass == 0 ? 1 : kMoreRuns;
+    CounterexampleSearch of_pass = search;
+    for (std::uint32_t pass = 0; pass < kPasses && work.left() > steps_kept; ++pass) {
         auto seen = work.with_share(work.left() - steps_kept, [&](Work& share) {
             return search_boxes(transitions, pass, of_pass, share);
         });
@@ -240,6 +241,7 @@ std::optional<Counterexample> find_counterexample(
         if (found && !found->choice) {
             break;
         }
+        of_pass.runs *= kMoreRuns;
     }
     if (found) {
         found->core = find_core(transitions, *found, work);

@@ -32,17 +32,18 @@ struct Counterexample {
 };
 
 struct CounterexampleSearch {
-    std::uint32_t runs = 16;  // in every box, and four times as many the second time
+    std::uint32_t runs =
+        16;  // in every box; then in another pass 4 times, in a last one 16 times as many
     std::size_t box_cells_max = 1000;
     std::uint64_t seed = 0;
 };
 
 // Looks for a counterexample by runs of Algorithm 3.1 with random choices, in boxes of rising
-// size, twice over: the box of the answer is the smallest in which one was seen. One without
-// `choice` is looked for until the end; where none is seen, the first one with it is the answer.
-// The cells of one without are as few as the work allows.
-// Ensures:  deterministic in its arguments. Nothing when none was seen, which proves nothing.
-// Cost:     a step a cell at most; in the plane boxes have no more than 256 cells. Thread-safe.
+// size, in up to three passes: the box of the answer is the smallest in which its pass saw one. One
+// without `choice` is looked for until the end; where none is seen, the first one with it is the
+// answer. The cells of one without are as few as the work allows. Ensures:  deterministic in its
+// arguments. Nothing when none was seen, which proves nothing. Cost:     a step a cell at most; in
+// the plane boxes have no more than 256 cells. Thread-safe.
 [[nodiscard]] std::optional<Counterexample> find_counterexample(
     const Transitions& transitions, const CounterexampleSearch& search, Work& work
 );

@@ -26,18 +26,20 @@ constexpr std::array<const char*, kStyleCount> kDashes = {
 // Colours of about equal contrast, on white and on near-black.
 constexpr const char* kStyle =
     "<style>\n"
-    "svg { color: #222; background: #fff; font: 13px system-ui, sans-serif; }\n"
-    "text { fill: currentColor; }\n"
-    ".grid { stroke: currentColor; stroke-opacity: 0.18; }\n"
-    ".axis { stroke: currentColor; fill: none; }\n"
-    ".line { fill: none; stroke-width: 2; }\n"
-    ".bar { stroke-width: 1; stroke-opacity: 0.7; }\n"
-    ".c0 { color: #1f5fa8; } .c1 { color: #b3541e; } .c2 { color: #24733a; }\n"
-    ".c3 { color: #7a3fa0; } .c4 { color: #a3244f; } .c5 { color: #5d5d5d; }\n"
+    ".success { color: #222; background: #fff; font: 13px system-ui, sans-serif; }\n"
+    ".success text { fill: currentColor; }\n"
+    ".success .grid { stroke: currentColor; stroke-opacity: 0.18; }\n"
+    ".success .axis { stroke: currentColor; fill: none; }\n"
+    ".success .line { fill: none; stroke-width: 2; }\n"
+    ".success .bar { stroke-width: 1; stroke-opacity: 0.7; }\n"
+    ".success .c0 { color: #1f5fa8; } .success .c1 { color: #b3541e; }\n"
+    ".success .c2 { color: #24733a; } .success .c3 { color: #7a3fa0; }\n"
+    ".success .c4 { color: #a3244f; } .success .c5 { color: #5d5d5d; }\n"
     "@media (prefers-color-scheme: dark) {\n"
-    "svg { color: #e8e8e8; background: #161616; }\n"
-    ".c0 { color: #7fb4f0; } .c1 { color: #f0a36b; } .c2 { color: #7fce92; }\n"
-    ".c3 { color: #c79bf0; } .c4 { color: #f08fae; } .c5 { color: #b4b4b4; }\n"
+    ".success { color: #e8e8e8; background: #161616; }\n"
+    ".success .c0 { color: #7fb4f0; } .success .c1 { color: #f0a36b; }\n"
+    ".success .c2 { color: #7fce92; } .success .c3 { color: #c79bf0; }\n"
+    ".success .c4 { color: #f08fae; } .success .c5 { color: #b4b4b4; }\n"
     "}\n"
     "</style>\n";
 
@@ -205,7 +207,8 @@ std::string draw_legend(const SuccessCurve& curve, std::size_t index, std::size_
 std::string draw_success_curves(std::span<const SuccessCurve> curves) {
     const Across across(curves);
     std::string svg =
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 400\" role=\"img\" "
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 680 400\" class=\"success\" "
+        "role=\"img\" "
         "aria-label=\"Share of runs that succeed by size of the model\">\n";
     svg += kStyle;
     svg += draw_axes(across);

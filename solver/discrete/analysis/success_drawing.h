@@ -13,7 +13,7 @@ struct SuccessCurve {
     std::vector<SuccessPoint> points;
 };
 
-// The curves as an SVG drawing of 640 x 400 units in the manner of the thesis's Fig. 3.8: width of
+// The curves as an SVG drawing of 680 x 400 units in the manner of the thesis's Fig. 3.8: width of
 // the model in cells to the right, share of runs that succeed in percent upwards; a thin bar
 // through a point is where the true share lies with 95 % confidence (Wilson). Curves differ in
 // colour, dashes and marks, of which there are six, and are named in a legend.
