@@ -49,7 +49,7 @@ struct InfallibilityVerdict {
 };
 
 struct InfallibilityOptions {
-    std::uint64_t steps_max = 1'000'000;  // of work; about a microsecond to ten each
+    std::uint64_t steps_max = 1'000'000;  // of work; a microsecond to some ten of them each
     CounterexampleSearch search;
 };
 

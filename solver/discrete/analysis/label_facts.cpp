@@ -3,6 +3,7 @@
 #include "solver/core/catalog.h"
 #include "solver/core/grid_topology.h"
 #include "solver/discrete/analysis/transitions.h"
+#include "solver/discrete/analysis/work.h"
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/problem.h"
 
@@ -73,20 +74,20 @@ void find_self_adjacent(const Transitions& transitions, LabelFacts& facts) {
 // Places labels in the middle column of a model, one at a time.
 class Placer {
   public:
-    Placer(const Problem& problem, const std::stop_token& stop)
+    Placer(const Problem& problem, Work& work)
         : size_(problem.size),
-          stop_(stop),
+          work_(work),
           label_count_(problem.relations.label_count()),
           topology_(problem.size, problem.periodic),
           catalog_(topology_, problem.relations) {
-        is_possible_ = fill(catalog_, problem, stop) == Propagation::kConsistent;
+        is_possible_ = fill(catalog_, problem, work.stop()) == Propagation::kConsistent;
         for (std::size_t site = 0; site < catalog_.site_count(); ++site) {
             is_known_.push_back(!has_several(catalog_.labels(static_cast<Site>(site))));
         }
     }
 
-    // Nothing when it stands nowhere in the column, where something else could, without leaving
-    // a neighbour open.
+    // Nothing when it stands nowhere in the column, where something else could, or leaves a
+    // neighbour open somewhere; or no work is left to tell.
     std::optional<ForcedPatch> place(Label label) {
         std::optional<ForcedPatch> least;
         for (std::int32_t y = 0; is_possible_ && y < size_.y; ++y) {
@@ -94,9 +95,12 @@ class Placer {
             if (is_known_[site] || !catalog_.contains(site, label)) {
                 continue;
             }
+            if (!work_.take()) {
+                return std::nullopt;
+            }
             const auto mark = catalog_.mark();
             catalog_.assign(site, label);
-            const bool can_stand = catalog_.propagate(stop_) == Propagation::kConsistent;
+            const bool can_stand = catalog_.propagate(work_.stop()) == Propagation::kConsistent;
             const bool is_forcing = can_stand && knows_neighbours(site);
             if (is_forcing) {
                 ForcedPatch patch = find_patch(label);
@@ -139,7 +143,7 @@ class Placer {
     }
 
     GridSize size_;
-    const std::stop_token& stop_;
+    Work& work_;
     std::size_t label_count_;
     GridTopology topology_;
     GridCatalog catalog_;
@@ -169,9 +173,7 @@ void find_unreachable(
     }
 }
 
-void find_forced(
-    const Example& example, Parameters parameters, const std::stop_token& stop, LabelFacts& facts
-) {
+void find_forced(const Example& example, Parameters parameters, Work& work, LabelFacts& facts) {
     parameters.size->x = std::min(parameters.size->x, kPatchExtent);
     parameters.size->z = std::min(parameters.size->z, kPatchExtent);
     parameters.constraints.clear();
@@ -179,18 +181,22 @@ void find_forced(
     if (!problem) {
         return;
     }
-    Placer placer(*problem, stop);
-    for (std::size_t label = 0; label < example.pieces.size() && !stop.stop_requested(); ++label) {
+    Placer placer(*problem, work);
+    for (std::size_t label = 0; label < example.pieces.size(); ++label) {
         if (auto patch = placer.place(static_cast<Label>(label)); patch && patch->cell_count > 1) {
             facts.forced.push_back(std::move(*patch));
         }
     }
+    facts.are_forced_complete = work.left() > 0;
 }
 
 }  // namespace
 
 Result<LabelFacts> find_label_facts(
-    const Example& example, const Parameters& parameters, const std::stop_token& stop
+    const Example& example,
+    const Parameters& parameters,
+    const std::stop_token& stop,
+    std::uint64_t placements_max
 ) {
     LabelFacts facts;
     count_cells(example, facts);
@@ -204,7 +210,8 @@ Result<LabelFacts> find_label_facts(
         facts.contradiction = problem.error().message;
     }
     if (!facts.contradiction) {
-        find_forced(example, parameters, stop, facts);
+        Work work(placements_max, stop);
+        find_forced(example, parameters, work, facts);
     }
     if (stop.stop_requested()) {
         return tl::unexpected(Error{ErrorCode::kCancelled, "the analysis was stopped", {}});

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -35,6 +36,7 @@ struct LabelFacts {
     std::array<LabelSet, 3> self_adjacent;
     LabelSet repeating;
     std::vector<ForcedPatch> forced;  // by label
+    bool are_forced_complete = true;  // false: the work was used up before every label was placed
     // One piece a floor, see find_plain_model(): a consistent model to begin with (Algorithm 3.4,
     // lines 3-5) without a search.
     bool has_plain_model = false;
@@ -46,13 +48,18 @@ struct LabelFacts {
 // Looks at the catalog that the boundary leaves in a model of the size given, before any choice
 // (thesis 3.3.2): a label that is not in it stands nowhere; one that is may still not be.
 // For `forced` each label is placed in the middle of a model of up to 21 cells along x and z with
-// this boundary, at every height at which it can stand.
+// this boundary, at every height at which it can stand: at most placements_max times.
 // Requires: defaults filled in and find_faults() empty (checked).
 // Fails:    kCancelled when `stop` is requested.
-// Cost:     one propagation over the model, and labels * height over 21 x height x 21 cells.
+// Cost:     one propagation over the model, and labels * height or placements_max over 21 x height
+// x
+//           21 cells.
 //           Thread-safe.
 [[nodiscard]] Result<LabelFacts> find_label_facts(
-    const Example& example, const Parameters& parameters, const std::stop_token& stop
+    const Example& example,
+    const Parameters& parameters,
+    const std::stop_token& stop,
+    std::uint64_t placements_max = 20'000
 );
 
 }  // namespace modelsynth::discrete

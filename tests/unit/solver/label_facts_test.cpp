@@ -138,6 +138,22 @@ TEST(LabelFacts, FindLabelsThatCopyThePlaceTheyCameFrom) {
     EXPECT_EQ(chequered.forced[0], (ForcedPatch{0, 63, set_of(chequers, {0, 1}), false}));
 }
 
+TEST(LabelFacts, PlaceNoMoreLabelsThanAllowed) {
+    const Example example = grounded_pillars();
+    const Parameters parameters = sized(example, {30, 5, 30});
+    const LabelFacts all = find_label_facts(example, parameters, {}).value();
+    EXPECT_TRUE(all.are_forced_complete);
+    const LabelFacts none = find_label_facts(example, parameters, {}, 0).value();
+    EXPECT_FALSE(none.are_forced_complete);
+    EXPECT_TRUE(none.forced.empty());
+    EXPECT_EQ(none.unreachable, all.unreachable);
+    // The air is placed first; then the pillar, that may stand on one floor only.
+    const LabelFacts some = find_label_facts(example, parameters, {}, 2).value();
+    EXPECT_FALSE(some.are_forced_complete);
+    ASSERT_EQ(some.forced.size(), 1U);
+    EXPECT_EQ(some.forced[0], all.forced[0]);
+}
+
 TEST(LabelFacts, AreCancelledWhenAsked) {
     const Example example = make_pillars();
     std::stop_source stop;
