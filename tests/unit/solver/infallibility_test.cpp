@@ -175,7 +175,7 @@ std::string text_of(const InfallibilityVerdict& verdict) {
 InfallibilityVerdict verdict_of(const Example& example, std::uint64_t steps_max) {
     InfallibilityOptions options;
     options.steps_max = steps_max;
-    options.search.runs = 4;
+    options.search.runs = 2;
     options.search.box_cells_max = 64;
     return judge_infallibility(read_transitions(example), options, {}).value();
 }
