@@ -212,6 +212,26 @@ OrderedJson summary(const discrete::Example& example, const std::string& id, boo
          {{"self", self}, {"model", self + "/model.glb"}, {"pieces", self + "/pieces.glb"}}}};
 }
 
+// As high as the example; of rules alone, one cell along an axis that nothing is neighbours along.
+void set_default_size(discrete::Example& example) {
+    GridSize& size = example.default_size;
+    if (example.size.cell_count() > 0) {
+        size.y = example.size.y;
+        return;
+    }
+    const auto has_neighbours = [&example](std::uint8_t axis) {
+        return std::any_of(
+            example.adjacency.begin(),
+            example.adjacency.end(),
+            [axis](const discrete::AdjacentPair& pair) { return pair.axis == axis; }
+        );
+    };
+    size = {
+        has_neighbours(0) ? size.x : 1,
+        has_neighbours(1) ? size.y : 1,
+        has_neighbours(2) ? size.z : 1};
+}
+
 }  // namespace
 
 std::optional<discrete::Example> read_example(const Value& value, const RequestLimits& limits) {
@@ -274,7 +294,7 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
     if (!value.faults().empty()) {
         return std::nullopt;
     }
-    example.default_size.y = example.size.y > 0 ? example.size.y : example.default_size.y;
+    set_default_size(example);
     example.kit = std::make_shared<const Kit>(std::move(kit));
     discrete::add_missing_meshes(example);
     return example;

@@ -1,3 +1,4 @@
+#include "proto/analysis_codec.h"
 #include "proto/example_codec.h"
 #include "proto/job.h"
 #include "server/http/handlers.h"
@@ -25,6 +26,16 @@ Response example_glb(const Call& call, const Scene& scene, bool named_nodes, con
         return refuse(call, proto::problem_of(glb.error()));
     }
     return respond_with(call.request, glb_in_memory(std::move(*glb), call.id + suffix));
+}
+
+template <class Answer>
+Response with_analysis(const Call& call, Answer answer) {
+    const auto entry = call.service.examples().find(call.id);
+    if (!entry) {
+        return no_example(call);
+    }
+    const auto analysis = call.service.analyses().find_or_make(entry->id, entry->example);
+    return analysis ? answer(*entry, **analysis) : refuse(call, analysis.error());
 }
 
 }  // namespace
@@ -82,6 +93,21 @@ Response get_example_pieces(const Call& call) {
         return no_example(call);
     }
     return example_glb(call, pieces_scene(entry->example), true, ".pieces.glb");
+}
+
+Response get_example_analysis(const Call& call) {
+    return with_analysis(call, [](const auto& entry, const Analysis& analysis) {
+        return json_response(200, proto::analysis_json(entry.example, entry.id, analysis));
+    });
+}
+
+Response get_example_success(const Call& call) {
+    return with_analysis(call, [](const auto& entry, const Analysis& analysis) -> Response {
+        return {
+            200,
+            {{"Content-Type", "image/svg+xml"}},
+            proto::success_drawing(entry.example, analysis)};
+    });
 }
 
 }  // namespace modelsynth::server

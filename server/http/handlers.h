@@ -40,6 +40,8 @@ struct Call {
 [[nodiscard]] Response delete_example(const Call& call);
 [[nodiscard]] Response get_example_model(const Call& call);
 [[nodiscard]] Response get_example_pieces(const Call& call);
+[[nodiscard]] Response get_example_analysis(const Call& call);
+[[nodiscard]] Response get_example_success(const Call& call);
 
 // service_handlers.cpp
 [[nodiscard]] Response list_solvers(const Call& call);

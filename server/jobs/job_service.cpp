@@ -364,6 +364,7 @@ bool JobService::is_ready() {
 
 void JobService::drain() {
     draining_ = true;
+    analyses_.stop();
     for (std::jthread& worker : workers_) {
         worker.request_stop();
     }

@@ -3,6 +3,7 @@
 #include "proto/job.h"
 #include "proto/limits.h"
 #include "proto/problem.h"
+#include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
@@ -81,6 +82,8 @@ class JobService {
 
     [[nodiscard]] ExampleLibrary& examples() { return examples_; }
 
+    [[nodiscard]] ExampleAnalyses& analyses() { return analyses_; }
+
     [[nodiscard]] LiveJobs& live() { return live_; }
 
     [[nodiscard]] EventLog& events() { return events_; }
@@ -121,6 +124,7 @@ class JobService {
     ArtifactStore& artifacts_;
     std::shared_ptr<spdlog::logger> log_;
     ExampleLibrary examples_;
+    ExampleAnalyses analyses_;
     LiveJobs live_;
     RunningJobs running_;
     Preparations preparations_;

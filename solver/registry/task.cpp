@@ -79,6 +79,14 @@ Result<Finished> run(
         {made->size, std::move(made->labels)}, {made->stats.blocks, made->stats.changed}};
 }
 
+Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {
+    auto analysis = discrete::analyse(discrete_of(example), stop);
+    if (!analysis) {
+        return tl::unexpected(std::move(analysis.error()));
+    }
+    return Analysis(std::move(*analysis));
+}
+
 Scene make_scene(const Example& example, const Model& model, const Box& region) {
     return discrete::make_scene(discrete_of(example), model.size, model.labels, region);
 }

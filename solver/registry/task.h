@@ -3,6 +3,7 @@
 #include "solver/core/grid.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
+#include "solver/discrete/analysis/analysis.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/preparation.h"
@@ -79,6 +80,10 @@ struct Preparations {
     const Checkpoint* from = nullptr,
     std::uint32_t threads = 1
 );
+
+// What can be said of an example before anything is made of it; see the solver's own header.
+using Analysis = std::variant<discrete::Analysis>;
+[[nodiscard]] Result<Analysis> analyse(const Example& example, const std::stop_token& stop);
 
 // A region of the model as a scene, in the whole model's frame.
 [[nodiscard]] Scene make_scene(const Example& example, const Model& model, const Box& region);

@@ -74,4 +74,33 @@ inline discrete::Example make_random_example(std::uint64_t seed) {
     return make_example(size, std::move(cells), labels);
 }
 
+// A random example of two to six labels in a plane, of two to four in space. Odd seeds: what stands
+// on a small grid. Even ones: any pairs at all, more or less, as no grid of that size could hold.
+inline discrete::Example make_tiny_example(std::uint64_t seed, bool is_planar) {
+    RandomStream random({seed, 0, 0, 98});
+    const auto below = [&random](std::uint32_t bound) { return random.below(bound); };
+    const std::uint32_t labels = 2 + below(is_planar ? 5 : 3);
+    if (seed % 2 == 1) {
+        const auto extent = [&] { return static_cast<std::int32_t>(2 + below(3)); };
+        const GridSize size = {extent(), is_planar ? 1 : extent(), extent()};
+        std::vector<Label> cells(size.cell_count());
+        for (Label& cell : cells) {
+            cell = static_cast<Label>(below(labels));
+        }
+        return make_example(size, std::move(cells), labels);
+    }
+    discrete::Example example = make_example({0, 0, 0}, {}, labels);
+    const std::uint32_t share = 2 + below(5);  // of ten pairs
+    for (const std::uint8_t axis : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}}) {
+        for (Label a = 0; a < labels; ++a) {
+            for (Label b = 0; b < labels; ++b) {
+                if ((axis != 1 || !is_planar) && below(10) < share) {
+                    example.adjacency.push_back({axis, a, b});
+                }
+            }
+        }
+    }
+    return example;
+}
+
 }  // namespace modelsynth::testing

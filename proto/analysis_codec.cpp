@@ -1,0 +1,158 @@
+#include "proto/analysis_codec.h"
+
+#include "proto/json.h"
+#include "solver/discrete/analysis/success_drawing.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace modelsynth::proto {
+
+namespace {
+
+using discrete::Counterexample;
+using discrete::Infallibility;
+using discrete::InfallibilityProof;
+using discrete::InfallibilityVerdict;
+
+// What JavaScript's numbers hold.
+constexpr std::uint64_t kCountMax = (std::uint64_t{1} << 53) - 1;
+
+const char* name_of(Infallibility kind) {
+    switch (kind) {
+        case Infallibility::kInfallible:
+            return "infallible";
+        case Infallibility::kFallible:
+            return "fallible";
+        case Infallibility::kUnknown:
+            break;
+    }
+    return "unknown";
+}
+
+OrderedJson write_size(const GridSize& size) {
+    return OrderedJson::array({size.x, size.y, size.z});
+}
+
+class Writer {
+  public:
+    Writer(const discrete::Example& example, const discrete::Analysis& analysis)
+        : example_(example), analysis_(analysis) {}
+
+    [[nodiscard]] OrderedJson proof() const {
+        const InfallibilityVerdict& verdict = analysis_.verdict;
+        if (verdict.counterexample) {
+            return counterexample(*verdict.counterexample);
+        }
+        switch (verdict.proof) {
+            case InfallibilityProof::kOneAxis:
+                return {{"kind", "one_axis"}};
+            case InfallibilityProof::kEquation311:
+                return {{"kind", "equation_3_11"}};
+            case InfallibilityProof::kRegion:
+                return {{"kind", "region"}, {"region", write_size(*verdict.region)}};
+            case InfallibilityProof::kNone:
+                break;
+        }
+        return nullptr;
+    }
+
+    [[nodiscard]] OrderedJson warnings() const {
+        OrderedJson list = OrderedJson::array();
+        for (const discrete::Warning& warning : analysis_.warnings) {
+            OrderedJson pieces = OrderedJson::array();
+            for (const Label label : warning.labels) {
+                pieces.push_back(example_.pieces[label].name);
+            }
+            list.push_back(
+                {{"code", discrete::name_of(warning.code)},
+                 {"message", warning.message},
+                 {"pieces", std::move(pieces)}}
+            );
+        }
+        return list;
+    }
+
+    [[nodiscard]] OrderedJson success() const {
+        OrderedJson list = OrderedJson::array();
+        for (const discrete::SuccessPoint& point : analysis_.success) {
+            list.push_back(
+                {{"size", write_size(point.size)},
+                 {"runs", point.runs},
+                 {"successes", point.successes}}
+            );
+        }
+        return list;
+    }
+
+    [[nodiscard]] OrderedJson counts() const {
+        OrderedJson list = OrderedJson::array();
+        for (const auto& [size, models] : analysis_.counts) {
+            list.push_back(
+                {{"size", write_size(size)},
+                 {"models", std::min(models.count, kCountMax)},
+                 {"exact", models.is_exact && models.count <= kCountMax}}
+            );
+        }
+        return list;
+    }
+
+  private:
+    [[nodiscard]] OrderedJson counterexample(const Counterexample& found) const {
+        return {
+            {"kind", "counterexample"},
+            {"message", discrete::describe(found, example_)},
+            {"box", write_size(found.box)},
+            {"cells", placed(found.cells)},
+            {"choice", found.choice ? place(*found.choice) : OrderedJson(nullptr)},
+            {"core", placed(found.core)}};
+    }
+
+    [[nodiscard]] OrderedJson place(const discrete::PlacedLabel& one) const {
+        return {
+            {"cell", OrderedJson::array({one.cell.x, one.cell.y, one.cell.z})},
+            {"piece", example_.pieces[one.label].name}};
+    }
+
+    [[nodiscard]] OrderedJson placed(const std::vector<discrete::PlacedLabel>& labels) const {
+        OrderedJson list = OrderedJson::array();
+        for (const discrete::PlacedLabel& one : labels) {
+            list.push_back(place(one));
+        }
+        return list;
+    }
+
+    const discrete::Example& example_;
+    const discrete::Analysis& analysis_;
+};
+
+const discrete::Example& discrete_of(const Example& example) {
+    return *std::get<std::shared_ptr<const discrete::Example>>(example);
+}
+
+}  // namespace
+
+std::string analysis_json(const Example& example, const std::string& id, const Analysis& analysis) {
+    const auto& discrete = std::get<discrete::Analysis>(analysis);
+    const Writer writer(discrete_of(example), discrete);
+    const std::string self = "/v1/examples/" + id;
+    return dump(OrderedJson{
+        {"verdict", name_of(discrete.verdict.kind)},
+        {"proof", writer.proof()},
+        {"description", discrete.verdict.description},
+        {"labels", discrete_of(example).pieces.size()},
+        {"warnings", writer.warnings()},
+        {"success", writer.success()},
+        {"models", writer.counts()},
+        {"urls",
+         {{"self", self + "/analysis"}, {"example", self}, {"drawing", self + "/success.svg"}}}});
+}
+
+std::string success_drawing(const Example& example, const Analysis& analysis) {
+    const std::array<discrete::SuccessCurve, 1> curves = {
+        {{discrete_of(example).name, std::get<discrete::Analysis>(analysis).success}}};
+    return discrete::draw_success_curves(curves);
+}
+
+}  // namespace modelsynth::proto
