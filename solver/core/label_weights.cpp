@@ -36,6 +36,16 @@ constexpr std::array<std::uint32_t, (1U << kLogTableBits) + 1> make_log_table() 
 
 constexpr auto kLogTable = make_log_table();
 
+// Of `count` labels whose weights, and these times their logarithms, come to the sums given.
+std::uint32_t entropy_of(std::uint64_t weights, std::uint64_t logs, std::uint64_t count) {
+    if (weights == 0) {
+        return fixed_log2(std::max<std::uint64_t>(1, count));
+    }
+    const std::uint64_t mean = logs / weights;
+    const std::uint64_t whole = fixed_log2(weights);
+    return static_cast<std::uint32_t>(whole > mean ? whole - mean : 0);
+}
+
 }  // namespace
 
 std::uint32_t fixed_log2(std::uint64_t value) {
@@ -60,6 +70,14 @@ LabelWeights::LabelWeights(std::span<const double> weights)
             const double scaled = weights[label] / largest * kLargest;
             weights_[label] = std::max(1U, static_cast<std::uint32_t>(scaled));
             weighted_logs_[label] = std::uint64_t{weights_[label]} * fixed_log2(weights_[label]);
+        }
+    }
+    if (!weights_.empty() && std::count(weights_.begin(), weights_.end(), weights_.front()) ==
+                                 static_cast<std::ptrdiff_t>(weights_.size())) {
+        for (std::uint64_t count = 0; count <= weights_.size(); ++count) {
+            entropy_of_count_.push_back(
+                entropy_of(count * weights_.front(), count * weighted_logs_.front(), count)
+            );
         }
     }
 }
@@ -91,18 +109,16 @@ Label LabelWeights::draw(std::span<const Word> set, RandomStream& random) const 
 }
 
 std::uint32_t LabelWeights::entropy(std::span<const Word> set) const {
+    if (!entropy_of_count_.empty()) {
+        return entropy_of_count_[count_labels(set)];
+    }
     std::uint64_t total = 0;
     std::uint64_t logs = 0;
     for_each_label(set, [&](Label label) {
         total += weights_[label];
         logs += weighted_logs_[label];
     });
-    if (total == 0) {
-        return fixed_log2(std::max<std::uint64_t>(1, count_labels(set)));
-    }
-    const std::uint64_t mean = logs / total;
-    const std::uint64_t whole = fixed_log2(total);
-    return static_cast<std::uint32_t>(whole > mean ? whole - mean : 0);
+    return entropy_of(total, logs, count_labels(set));
 }
 
 }  // namespace modelsynth

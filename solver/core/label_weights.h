@@ -32,6 +32,8 @@ class LabelWeights {
   private:
     std::vector<std::uint32_t> weights_;
     std::vector<std::uint64_t> weighted_logs_;  // w * log2(w), in units of 2^-16
+    // By the number of labels, where all have the same weight; empty where they have not.
+    std::vector<std::uint32_t> entropy_of_count_;
 };
 
 // log2(value) in units of 2^-16, exact to a few units. Requires: value > 0.

@@ -62,7 +62,10 @@ class EntropyPicker {
 
     template <class CatalogType>
     EntropyPicker(CatalogType& catalog, const PartWeights& weights, RandomStream& random)
-        : weights_(weights), keys_(catalog.site_count()), noise_(catalog.site_count()) {
+        : weights_(weights),
+          keys_(catalog.site_count()),
+          noise_(catalog.site_count()),
+          round_of_(catalog.site_count()) {
         catalog.track_changes();
         catalog.clear_changed();
         for (std::size_t site = 0; site < keys_.size(); ++site) {
@@ -73,8 +76,12 @@ class EntropyPicker {
 
     template <class CatalogType>
     bool next(CatalogType& catalog, Site& site) {
+        ++round_;
         for (const Site changed : catalog.changed()) {
-            push(catalog, changed);
+            if (round_of_[changed] != round_) {  // some are listed many times
+                round_of_[changed] = round_;
+                push(catalog, changed);
+            }
         }
         catalog.clear_changed();
         while (!heap_.empty()) {
@@ -120,6 +127,8 @@ class EntropyPicker {
     PartWeights weights_;
     std::vector<std::uint64_t> keys_;
     std::vector<std::uint32_t> noise_;
+    std::vector<std::uint64_t> round_of_;  // of calls in which the site's key was looked at last
+    std::uint64_t round_ = 0;
     std::vector<Entry> heap_;
 };
 
