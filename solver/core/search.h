@@ -168,6 +168,9 @@ class Search {
     [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
         Site site = 0;
         while (picker_.next(catalog_, site)) {
+            if (stop_.stop_requested()) {
+                return SearchOutcome::kStopped;
+            }
             const Label label = weights_.at(site).draw(catalog_.labels(site), random_);
             const auto mark = catalog_.mark();
             const std::size_t position = picker_.position();

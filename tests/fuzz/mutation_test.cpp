@@ -100,8 +100,9 @@ constexpr const char* kExample = R"({"kind":"discrete","name":"line","cell":[1,1
 "boundary":{"bottom":"example","top":["empty"],"north":"periodic","south":"periodic"}})";
 
 TEST(Fuzz, JobRequests) {
-    const std::string request =
-        R"({"solver":"discrete","example":)" + std::string(kExample) +
+    std::string request = R"({"solver":"discrete","example":)";
+    request += kExample;
+    request +=
         R"(,"seed":7,"parameters":{"size":[4,3,2],"blocks":{"size":[2,2,2],"overlap":0.5},)"
         R"("boundary":{"top":"empty"},"order":"scan","weights":{"wall":3},)"
         R"("constraints":[{"kind":"fixed","pieces":["wall"],"box":{"min":[0,1,0],"max":[1,2,1]}}]},)"
@@ -118,6 +119,56 @@ TEST(Fuzz, JobRequests) {
         EXPECT_TRUE(again && again->echo == parsed->echo) << text;
         return true;
     });
+}
+
+class Silent final : public Observer {
+  public:
+    void on_start(std::uint32_t, std::span<const Label>) override {}
+
+    void on_block(const BlockReport&) override {}
+};
+
+// What is accepted of constraints can be made, or is refused with a reason.
+TEST(Fuzz, Constraints) {
+    std::string request = R"({"solver":"discrete","example":)";
+    request += kExample;
+    request +=
+        R"(,"seed":7,"parameters":{"size":[4,2,4],"blocks":{"size":[2,2,2]},"weights":"uniform",)"
+        R"("boundary":{"bottom":"free","top":"free","north":"free","south":"free"},"constraints":[)"
+        R"({"kind":"probability","pieces":["wall"],"weight":2.5,"mask":")"
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAABAAAAAQCAAAAAA6mKC9AAAAMUlEQ"
+        "VR4nGNgIAb8//8fiQIzQEwoBWXAAVECDOh8ZBEke1H4MBE0t6HwQSJEeQorAADMnWOd53M09AAA"
+        "AABJRU5ErkJggg=="
+        R"("},)"
+        R"({"kind":"forbidden","pieces":["empty"],"cells":[[0,0,0],[1,0,1]]},)"
+        R"({"kind":"count","pieces":["wall"],"min":1,"max":9},)"
+        R"({"kind":"separation","pieces":["wall"],"distance":2},)"
+        R"({"kind":"max_run","pieces":["ground"],"max":7,"axis":"x"},)"
+        R"({"kind":"connected","pieces":["ground","wall"]},)"
+        R"({"kind":"acyclic","pieces":["wall"],"box":{"min":[0,1,0],"max":[3,2,3]}},)"
+        R"({"kind":"path","pieces":["ground"],"from":[0,0,0],"to":[3,0,1]},)"
+        R"({"kind":"fixed","pieces":["ground"],"voxels":{"size":[1,2,1],"values":[0.75,0]}}]}})";
+    const auto none = [](const std::string&) { return std::optional<Example>(); };
+    constexpr std::size_t kMadeCellsMax = 1000;
+    std::size_t made = 0;
+    fuzz(request, 8, [&](const std::string& text) {
+        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        if (!parsed) {
+            EXPECT_FALSE(proto::to_json(parsed.error()).empty());
+            return false;
+        }
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        EXPECT_TRUE(again && again->echo == parsed->echo) << text;
+        if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
+            Preparations preparations;
+            Silent observer;
+            const auto finished = run(parsed->task, preparations, observer, {});
+            EXPECT_TRUE(finished || !finished.error().message.empty());
+            made += finished ? 1U : 0U;
+        }
+        return true;
+    });
+    EXPECT_GT(made, 1U);  // the request as it stands, and others
 }
 
 TEST(Fuzz, Examples) {

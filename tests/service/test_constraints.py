@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from checks import assert_faults, assert_fits, job_request, make_job
+from checks import assert_faults, assert_fits, job_request, make_job, state_of, wait_until
 from constraint_oracle import Oracle, grey_png
 
 _GUIDE = pathlib.Path(__file__).parents[2] / "proto" / "constraints.md"
@@ -163,6 +163,16 @@ def test_what_cannot_hold_is_said_to_be_impossible(server, constraints, kind, wo
     assert job["state"] == "failed"
     assert job["error"]["type"] == f"/problems/{kind}", job["error"]
     assert words is None or words in job["error"]["detail"], job["error"]
+
+
+def test_a_search_of_the_whole_under_constraints_can_be_stopped(server):
+    """Each of its choices asks for the connections of everything: without end, seen from here."""
+    streets = _REQUESTS[[_name(one) for one in _REQUESTS].index("connected")]
+    job = server.request("POST", "/v1/jobs", {**streets, "parameters": {
+        **streets["parameters"], "size": [400, 10, 400], "blocks": None}}).json()
+    wait_until(lambda: state_of(server, job) == "running")
+    server.request("POST", f"/v1/jobs/{job['id']}/cancel")
+    assert server.wait(job["id"])["state"] == "cancelled"
 
 
 def test_the_same_request_gives_the_same_model(server):

@@ -81,6 +81,9 @@ class ConstraintBoard {
     template <class CatalogType>
     [[nodiscard]] Propagation settle(CatalogType& catalog, const std::stop_token& stop) {
         for (;;) {
+            if (stop.stop_requested()) {
+                return Propagation::kStopped;
+            }
             note(catalog, catalog.changed());
             if (!conclude()) {
                 return Propagation::kContradiction;
