@@ -156,14 +156,14 @@ class Search {
         const PartWeights& weights,
         ConstraintBoard* board,
         RandomStream& random,
-        const std::stop_token& stop
+        std::stop_token stop
     )
         : catalog_(catalog),
           picker_(picker),
           weights_(weights),
           board_(board),
           random_(random),
-          stop_(stop) {}
+          stop_(std::move(stop)) {}
 
     [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
         Site site = 0;
@@ -272,7 +272,7 @@ class Search {
     PartWeights weights_;
     ConstraintBoard* board_;
     RandomStream& random_;
-    const std::stop_token& stop_;
+    std::stop_token stop_;
     std::vector<Choice> choices_;
     std::uint32_t backtracks_ = 0;
     std::size_t deepest_ = 0;
