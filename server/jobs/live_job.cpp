@@ -25,7 +25,7 @@ void LiveJob::start(std::uint64_t seq, std::span<const Label> model, bool any_bl
     const std::lock_guard lock(mutex_);
     base_seq_ = seq;
     head_seq_ = seq;
-    any_block_ = any_block;
+    base_has_block_ = any_block;
     if (!model.empty()) {
         base_.labels.assign(model.begin(), model.end());
     }
@@ -34,12 +34,12 @@ void LiveJob::start(std::uint64_t seq, std::span<const Label> model, bool any_bl
 void LiveJob::apply(std::shared_ptr<const Patch> patch) {
     const std::lock_guard lock(mutex_);
     head_seq_ = std::max(head_seq_, patch->seq);
-    any_block_ = true;
     patch_bytes_ += patch->labels.size() * sizeof(Label);
     patches_.push_back(std::move(patch));
     while (patch_bytes_ > kPatchBytesMax) {
         lay(*patches_.front(), base_);
         base_seq_ = patches_.front()->seq;
+        base_has_block_ = true;
         patch_bytes_ -= patches_.front()->labels.size() * sizeof(Label);
         patches_.pop_front();
     }
@@ -51,10 +51,11 @@ void LiveJob::pass(std::uint64_t seq) {
 }
 
 LiveJob::State LiveJob::build(std::uint64_t seq) const {
-    State state = {seq, base_, any_block_};
+    State state = {seq, base_, base_has_block_};
     for (const auto& patch : patches_) {
         if (patch->seq <= seq) {
             lay(*patch, state.model);
+            state.any_block = true;
         }
     }
     return state;

@@ -71,7 +71,7 @@ class LiveJob {
     Model base_;  // before the patches
     std::uint64_t base_seq_ = 0;
     std::uint64_t head_seq_ = 0;
-    bool any_block_ = false;
+    bool base_has_block_ = false;  // a block was accepted up to base_seq_
     std::deque<std::shared_ptr<const Patch>> patches_;
     std::size_t patch_bytes_ = 0;
 };

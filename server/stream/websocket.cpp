@@ -122,11 +122,13 @@ struct WholeFrame {
     std::string bytes;
 };
 
+enum class WholeIf : std::uint8_t { kAny, kAnyBlock };
+
 std::optional<WholeFrame> whole_frame(
-    JobService& service, const SocketUpgrade& upgrade, std::uint64_t seq
+    JobService& service, const SocketUpgrade& upgrade, std::uint64_t seq, WholeIf condition
 ) {
     const auto whole = service.whole_state(upgrade.job_id, seq);
-    if (!whole) {
+    if (!whole || (condition == WholeIf::kAnyBlock && !whole->state.any_block)) {
         return std::nullopt;
     }
     const Model& model = whole->state.model;
@@ -147,9 +149,11 @@ bool is_accepted_block(const Event& event) {
 
 // Sends a whole state that includes everything up to `seq`, if there is one: a job that is solved
 // again after a restart has none until it has come so far. False when the client is gone.
-net::awaitable<bool> write_whole(Session& session, std::uint64_t seq) {
-    auto make = [&session, seq] {
-        return whole_frame(session.context.api->service(), session.upgrade, seq);
+net::awaitable<bool> write_whole(
+    Session& session, std::uint64_t seq, WholeIf condition = WholeIf::kAny
+) {
+    auto make = [&session, seq, condition] {
+        return whole_frame(session.context.api->service(), session.upgrade, seq, condition);
     };
     const auto whole = co_await on_pool(*session.context.pool, make);
     if (!whole) {
@@ -245,7 +249,8 @@ net::awaitable<void> write_events(Session& session) {
             break;
         }
         if (open && session.needs_whole && batch.page.events.empty()) {
-            open = co_await write_whole(session, session.cursor.position());
+            // Before the first accepted block there is nothing to show; it brings the state itself.
+            open = co_await write_whole(session, session.cursor.position(), WholeIf::kAnyBlock);
         }
     }
     if (session.closing.code != websocket::close_code::none) {

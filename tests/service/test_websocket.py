@@ -280,6 +280,17 @@ def test_a_reverted_block_has_no_frame(server):
             assert not isinstance(following, bytes) or StateFrame(following).is_whole
 
 
+def test_no_state_is_sent_before_the_first_block(server):
+    """However long that takes: each accepted block is followed by one frame, and that is all."""
+    slow_to_begin = {**SMALL_JOB, "size": (300, 6, 300)}
+    messages = watch(server, submit(server, slow_to_begin), partial="labels")
+    accepted = [event["seq"] for event in events_of(messages)
+                if event.get("outcome") == "accepted"]
+    frames = frames_of(messages)
+    assert frames[0].is_whole and frames[0].seq == accepted[0]
+    assert {frame.seq for frame in frames} <= set(accepted)
+
+
 def test_glb_frames_are_whole_glb_files_within_the_model(server):
     job = submit(server, SMALL_JOB)
     messages = watch(server, job, partial="glb")
