@@ -64,24 +64,6 @@ std::vector<double> weights_of(const Example& example, const Weights& weights) {
     return values;
 }
 
-// The labels that may be used at all: those that stand somewhere, less those of weight 0.
-LabelSet usable_labels(const Example& example, const std::vector<double>& weights) {
-    LabelSet used(example.pieces.size());
-    for (const Label label : example.cells) {
-        used.insert(label);
-    }
-    for (const AdjacentPair& pair : example.adjacency) {
-        used.insert(pair.lower);
-        used.insert(pair.upper);
-    }
-    for (std::size_t label = 0; label < weights.size(); ++label) {
-        if (weights[label] <= 0) {
-            used.erase(static_cast<Label>(label));
-        }
-    }
-    return used;
-}
-
 // Fails when some site has no label left before any neighbour was asked.
 Result<void> check_domains(const SiteDomains& domains, const GridSize& size) {
     for (std::size_t site = 0; site < domains.site_count(); ++site) {
@@ -102,6 +84,23 @@ Result<void> check_domains(const SiteDomains& domains, const GridSize& size) {
 }
 
 }  // namespace
+
+LabelSet usable_labels(const Example& example, const std::vector<double>& weights) {
+    LabelSet used(example.pieces.size());
+    for (const Label label : example.cells) {
+        used.insert(label);
+    }
+    for (const AdjacentPair& pair : example.adjacency) {
+        used.insert(pair.lower);
+        used.insert(pair.upper);
+    }
+    for (std::size_t label = 0; label < weights.size(); ++label) {
+        if (weights[label] <= 0) {
+            used.erase(static_cast<Label>(label));
+        }
+    }
+    return used;
+}
 
 Relations find_transitions(const Example& example) {
     Relations relations(example.pieces.size(), {1, 0, 3, 2, 5, 4});

@@ -21,6 +21,10 @@ namespace modelsynth::discrete {
 // per direction. Exactly the pairs that stand in the example, and those listed in `adjacency`.
 [[nodiscard]] Relations find_transitions(const Example& example);
 
+// The labels that may be used at all: those that stand in the example or its `adjacency`, less
+// those of weight 0. Shape: a weight for every piece.
+[[nodiscard]] LabelSet usable_labels(const Example& example, const std::vector<double>& weights);
+
 // A constraint on the cells whose piece is one of a set: what cannot be said of a cell by itself.
 struct MemberRule {
     std::size_t constraint = 0;  // its number in the parameters

@@ -5,6 +5,7 @@
 #include "solver/discrete/problem.h"
 
 #include <utility>
+#include <vector>
 
 namespace modelsynth::discrete {
 
@@ -22,20 +23,11 @@ bool allows_any(const Relations& relations, const LabelSet& labels, RelationId r
 }
 
 LabelSet find_labels(const Example& example) {
-    LabelSet labels(example.pieces.size());
-    for (const Label label : example.cells) {
-        labels.insert(label);
+    std::vector<double> weights;
+    for (const Piece& piece : example.pieces) {
+        weights.push_back(piece.weight);
     }
-    for (const AdjacentPair& pair : example.adjacency) {
-        labels.insert(pair.lower);
-        labels.insert(pair.upper);
-    }
-    for (std::size_t label = 0; label < example.pieces.size(); ++label) {
-        if (example.pieces[label].weight <= 0) {
-            labels.erase(static_cast<Label>(label));
-        }
-    }
-    return labels;
+    return usable_labels(example, weights);
 }
 
 }  // namespace
