@@ -5,6 +5,7 @@
 #include "solver/core/result.h"
 #include "solver/discrete/analysis/analysis.h"
 #include "solver/discrete/example.h"
+#include "solver/discrete/origin.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/preparation.h"
 #include "solver/mesh/scene.h"
@@ -56,6 +57,7 @@ struct Task {
     Example example;
     Parameters parameters;  // defaults filled in
     std::uint64_t seed = 0;
+    std::shared_ptr<const discrete::Origin> origin = nullptr;  // null: made from nothing
 };
 
 [[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);
