@@ -89,7 +89,7 @@ def test_awaiting_expressions_build_no_lambda_or_aggregate():
 
 
 @pytest.mark.parametrize("folder", [
-    "solver", "solver/core", "solver/discrete", "solver/discrete/analysis", "solver/mesh",
+    "solver", "solver/core", "solver/core/sat", "solver/discrete", "solver/discrete/analysis", "solver/mesh",
     "solver/examples", "solver/registry", "proto", "server", "server/store", "server/jobs",
     "server/http", "server/stream", "server/ops", "clients", "clients/cli", "tests", "deploy"])
 def test_every_folder_says_what_it_is(folder):
