@@ -53,6 +53,9 @@ struct BlockOptions {
     // their board stands with it; the same is so afterwards. Null: none.
     ConstraintBoard* board = nullptr;
     std::optional<Pin> pin = std::nullopt;
+    // By site of the part: counted up where attempts met dead ends, as by Search. Empty: not
+    // counted.
+    std::span<std::uint32_t> dead_ends = {};
 };
 
 // How an attempt at a block goes about it.
@@ -358,7 +361,9 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         RandomStream random(key);
         const PartWeights weights = {weights_, weight_numbers_};
         const auto with = [&](auto picker) {
-            Search search(*catalog_, picker, weights, options.board, random, stop);
+            Search search(
+                *catalog_, picker, weights, options.board, random, stop, options.dead_ends
+            );
             const SearchOutcome outcome = search.run(plan.budget);
             backtracks += search.backtracks();
             return outcome;

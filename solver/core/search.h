@@ -150,20 +150,25 @@ template <class CatalogType, class Picker>
 class Search {
   public:
     // `board`: the constraints beside the relations, which follow the catalog; null: none.
+    // `dead_ends`: by site, counted up where the search found that a choice before was wrong: the
+    // site that had no label left, with a board the one whose labels were tried. Empty: not
+    // counted.
     Search(
         CatalogType& catalog,
         Picker& picker,
         const PartWeights& weights,
         ConstraintBoard* board,
         RandomStream& random,
-        std::stop_token stop
+        std::stop_token stop,
+        std::span<std::uint32_t> dead_ends = {}
     )
         : catalog_(catalog),
           picker_(picker),
           weights_(weights),
           board_(board),
           random_(random),
-          stop_(std::move(stop)) {}
+          stop_(std::move(stop)),
+          dead_ends_(dead_ends) {}
 
     [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
         Site site = 0;
@@ -220,7 +225,12 @@ class Search {
     static constexpr std::uint32_t kJumpDoublingsMax = 10;
 
     Propagation refute(Site site, Label label) {
-        return catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
+        const Propagation propagation =
+            catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
+        if (propagation == Propagation::kContradiction && !dead_ends_.empty()) {
+            ++dead_ends_[board_ == nullptr ? catalog_.emptied_site() : site];
+        }
+        return propagation;
     }
 
     Propagation propagate() {
@@ -273,6 +283,7 @@ class Search {
     ConstraintBoard* board_;
     RandomStream& random_;
     std::stop_token stop_;
+    std::span<std::uint32_t> dead_ends_;
     std::vector<Choice> choices_;
     std::uint32_t backtracks_ = 0;
     std::size_t deepest_ = 0;

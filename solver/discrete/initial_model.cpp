@@ -2,8 +2,10 @@
 
 #include "solver/core/block_search.h"
 #include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/explanation/conflict.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/planting.h"
+#include "solver/discrete/whole_by_sat.h"
 
 #include <algorithm>
 #include <map>
@@ -328,10 +330,17 @@ class Finder {
         if (!model) {
             return tl::unexpected(std::move(model.error()));
         }
-        if (!*model) {
-            return tl::unexpected(gave_up(example_, problem_));
+        if (*model) {
+            return std::move(**model);
         }
-        return std::move(**model);
+        auto settled = settle_by_sat(problem_, seed_, stop_);
+        if (!settled) {
+            return tl::unexpected(std::move(settled.error()));
+        }
+        if (!*settled) {
+            return tl::unexpected(with_dead_ends(gave_up(example_, problem_)));
+        }
+        return InitialModel{std::move(**settled), true};
     }
 
     // The model, changed so that the member rules hold, or another one.
@@ -355,13 +364,20 @@ class Finder {
             return tl::unexpected(std::move(whole.error()));
         }
         if (!*whole) {
-            return tl::unexpected(violated(example_, problem_.member_rules[rule.value_or(0)]));
+            return tl::unexpected(
+                with_dead_ends(violated(example_, problem_.member_rules[rule.value_or(0)]))
+            );
         }
         return std::move(**whole);
     }
 
   private:
     static Error stopped() { return {ErrorCode::kCancelled, "stopped", {}}; }
+
+    [[nodiscard]] Error with_dead_ends(Error error) const {
+        error.explanation = hottest_of(problem_.size, dead_ends_);
+        return error;
+    }
 
     // Nothing when no attempt succeeded.
     Result<std::optional<InitialModel>> solve_whole(
@@ -372,6 +388,8 @@ class Finder {
         const std::vector<Site> scan = column_order(problem_.size);
         BlockOptions options = {attempts, Order::kScan, scan};
         options.board = board;
+        dead_ends_.assign(model.labels.size(), 0);
+        options.dead_ends = dead_ends_;
         if (board != nullptr) {
             board->start(model.labels);
         }
@@ -397,6 +415,7 @@ class Finder {
     BlockSearch<GridPart>& search_;
     std::uint64_t seed_;
     const std::stop_token& stop_;
+    std::vector<std::uint32_t> dead_ends_;  // by cell, of the last search of the whole
 };
 
 }  // namespace
@@ -428,8 +447,7 @@ Error contradiction_of(const Example& example, const Problem& problem, const Blo
     const std::string sides = name_sides(problem.size, cell);
     return {
         ErrorCode::kContradiction,
-        "no model of this size exists: at cell [" + std::to_string(cell.x) + ", " +
-            std::to_string(cell.y) + ", " + std::to_string(cell.z) + "]" +
+        "no model of this size exists: at cell " + name_cell(cell) +
             (sides.empty() ? "" : ", on " + sides) + ", none of " + list_names(example, own) +
             " can stand beside what the boundary and the constraints leave to its neighbours",
         {}};

@@ -1,5 +1,6 @@
 #include "solver/discrete/preparation.h"
 
+#include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 
 #include <algorithm>
@@ -33,7 +34,11 @@ Result<std::shared_ptr<Preparation>> Preparation::make(
 ) {
     auto problem = make_problem(*example, parameters);
     if (!problem) {
-        return tl::unexpected(std::move(problem.error()));
+        return tl::unexpected(
+            problem.error().code == ErrorCode::kContradiction
+                ? explain(std::move(problem.error()), *example, parameters, {})
+                : std::move(problem.error())
+        );
     }
     return std::shared_ptr<Preparation>(
         new Preparation(std::move(example), parameters, std::move(*problem))

@@ -74,8 +74,7 @@ Result<void> check_domains(const SiteDomains& domains, const GridSize& size) {
         const std::string sides = name_sides(size, cell);
         return tl::unexpected(Error{
             ErrorCode::kContradiction,
-            "no piece can stand at cell [" + std::to_string(cell.x) + ", " +
-                std::to_string(cell.y) + ", " + std::to_string(cell.z) + "]" +
+            "no piece can stand at cell " + name_cell(cell) +
                 (sides.empty() ? "" : ", on " + sides) +
                 ": what the boundary and the constraints allow there has nothing in common",
             {}});
@@ -124,7 +123,7 @@ Relations find_transitions(const Example& example) {
     return relations;
 }
 
-Result<Problem> make_problem(const Example& example, const Parameters& parameters) {
+Result<Problem> read_problem(const Example& example, const Parameters& parameters) {
     check(find_faults(example, parameters).empty(), "a problem was made of faulty parameters");
     const GridSize size = *parameters.size;
     const auto is_periodic = [&parameters](Direction side) {
@@ -157,7 +156,15 @@ Result<Problem> make_problem(const Example& example, const Parameters& parameter
         return tl::unexpected(std::move(read.error()));
     }
     problem.weights = std::move(tables).finish();
-    if (auto fits = check_domains(problem.domains, size); !fits) {
+    return problem;
+}
+
+Result<Problem> make_problem(const Example& example, const Parameters& parameters) {
+    auto problem = read_problem(example, parameters);
+    if (!problem) {
+        return problem;
+    }
+    if (auto fits = check_domains(problem->domains, problem->size); !fits) {
         return tl::unexpected(std::move(fits.error()));
     }
     return problem;

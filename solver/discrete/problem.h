@@ -45,8 +45,12 @@ struct Problem {
 };
 
 // Requires: find_faults() found nothing (checked).
+// Fails:    kTooLarge for too many tables of weights. Some cell may be able to take no piece at all.
+[[nodiscard]] Result<Problem> read_problem(const Example& example, const Parameters& parameters);
+
+// The same, with something for every cell to take.
 // Fails:    kContradiction when some cell can take no piece at all; the message names the sides.
-//           kTooLarge for too many tables of weights.
+//           kTooLarge as read_problem().
 [[nodiscard]] Result<Problem> make_problem(const Example& example, const Parameters& parameters);
 
 }  // namespace modelsynth::discrete

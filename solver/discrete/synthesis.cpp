@@ -3,7 +3,10 @@
 #include "solver/core/block_queue.h"
 #include "solver/core/block_schedule.h"
 #include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
+#include "solver/discrete/whole_by_sat.h"
 
 #include <exception>
 #include <memory>
@@ -50,7 +53,11 @@ class BlockSolver {
     }
 
     BlockResult modify(
-        std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
+        std::span<Label> labels,
+        const Box& block,
+        std::uint32_t index,
+        std::uint32_t attempts,
+        std::span<std::uint32_t> dead_ends = {}
     ) {
         if (stop_.stop_requested()) {
             return {BlockOutcome::kStopped};
@@ -64,6 +71,7 @@ class BlockSolver {
         }
         BlockOptions options = {attempts, preparation_.parameters().order, scan_};
         options.board = board_.get();
+        options.dead_ends = dead_ends;
         return search_->modify(part, labels, options, {seed_, index, 0, 0}, stop_);
     }
 
@@ -151,7 +159,8 @@ class Run {
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
         solver_.begin(labels_);
-        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts);
+        std::vector<std::uint32_t> dead_ends(labels_.size());
+        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts, dead_ends);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -163,11 +172,23 @@ class Run {
             case BlockOutcome::kReverted:
                 break;
         }
-        return tl::unexpected(Error{
-            ErrorCode::kGaveUp,
-            "no model was found in " + std::to_string(kWholeAttempts) +
-                " attempts at the whole at once; blocks succeed more often",
-            {}});
+        auto settled = settle_by_sat(problem_, seed_, stop_);
+        if (!settled) {
+            return tl::unexpected(std::move(settled.error()));
+        }
+        if (!*settled) {
+            return tl::unexpected(Error{
+                ErrorCode::kGaveUp,
+                "no model was found in " + std::to_string(kWholeAttempts) +
+                    " attempts at the whole at once; blocks succeed more often",
+                {},
+                hottest_of(problem_.size, dead_ends)});
+        }
+        labels_ = std::move(**settled);
+        report(
+            whole, {BlockOutcome::kAccepted, result.attempts, SolvedBy::kSat, result.backtracks}
+        );
+        return finish(1);
     }
 
   private:
@@ -317,7 +338,13 @@ Result<Synthesis> synthesise(
 ) {
     const auto& blocks = *preparation.parameters().blocks;
     Run run(preparation, seed, observer, stop);
-    return blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
+    auto made = blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
+    if (!made && made.error().code == ErrorCode::kContradiction) {
+        return tl::unexpected(
+            explain(std::move(made.error()), preparation.example(), preparation.parameters(), stop)
+        );
+    }
+    return made;
 }
 
 Result<Synthesis> synthesise(

@@ -27,6 +27,12 @@ struct SatLimits {
     std::uint32_t conflicts_max = 20'000;  // dead ends learned from, a second or two
 };
 
+struct SatResult {
+    SatOutcome outcome = SatOutcome::kGaveUp;
+    std::size_t literal_count = 0;     // of the formula, as far as it was made
+    std::uint64_t conflict_count = 0;  // dead ends learned from
+};
+
 // What RandomKey::purpose says of the stream drawn here.
 inline constexpr std::uint32_t kPurposeSat = 3;
 
@@ -40,7 +46,7 @@ inline constexpr std::uint32_t kPurposeSat = 3;
 // Ensures:  labels is written when and only when it is kSolved. Deterministic in all arguments.
 // Thread-safe.
 template <Topology T>
-[[nodiscard]] SatOutcome solve_by_sat(
+[[nodiscard]] SatResult solve_by_sat(
     const T& topology,
     const Relations& relations,
     std::span<const Word> sets,
@@ -55,23 +61,26 @@ template <Topology T>
     LabelFormula formula(relations, sets, limits.literals_max, random.next());
     formula.add_arcs(topology);
     if (formula.is_too_large()) {
-        return SatOutcome::kGaveUp;
+        return {SatOutcome::kGaveUp, formula.literal_count(), 0};
     }
     formula.prefer_drawn(weights, random);
+    const auto result = [&formula](SatOutcome outcome) {
+        return SatResult{outcome, formula.literal_count(), formula.conflict_count()};
+    };
     switch (formula.solve({}, limits.conflicts_max, stop)) {
         case CnfOutcome::kSatisfied:
             for (std::size_t site = 0; site < labels.size(); ++site) {
                 labels[site] = formula.label(static_cast<Site>(site));
             }
-            return SatOutcome::kSolved;
+            return result(SatOutcome::kSolved);
         case CnfOutcome::kUnsatisfiable:
-            return SatOutcome::kImpossible;
+            return result(SatOutcome::kImpossible);
         case CnfOutcome::kStopped:
-            return SatOutcome::kStopped;
+            return result(SatOutcome::kStopped);
         case CnfOutcome::kGaveUp:
             break;
     }
-    return SatOutcome::kGaveUp;
+    return result(SatOutcome::kGaveUp);
 }
 
 }  // namespace modelsynth

@@ -79,7 +79,8 @@ struct Tiny {
 
     SatOutcome solve(std::vector<Label>& labels, std::uint64_t seed = 1) const {
         labels.assign(graph.site_count(), kNoLabel);
-        return solve_by_sat(graph, relations, sets, {weights, {}}, {seed, 0, 0, 0}, {}, {}, labels);
+        return solve_by_sat(graph, relations, sets, {weights, {}}, {seed, 0, 0, 0}, {}, {}, labels)
+            .outcome;
     }
 
     RandomStream random;
@@ -177,7 +178,8 @@ TEST(SatSearch, SolvesWhatTheSearchSolves) {
         }
         std::vector<Label> labels(cells, kNoLabel);
         ASSERT_EQ(
-            solve_by_sat(whole.inner(), relations, sets, {weights, {}}, key, {}, {}, labels),
+            solve_by_sat(whole.inner(), relations, sets, {weights, {}}, key, {}, {}, labels)
+                .outcome,
             SatOutcome::kSolved
         );
         for (std::size_t cell = 0; cell < cells; ++cell) {
@@ -204,7 +206,7 @@ TEST(SatSearch, EqualSeedsGiveEqualModelsAndOthersOthers) {
         std::vector<Label> second(sites);
         for (std::vector<Label>* labels : {&first, &second}) {
             ASSERT_EQ(
-                solve_by_sat(ring, relations, sets, {weights, {}}, {seed}, {}, {}, *labels),
+                solve_by_sat(ring, relations, sets, {weights, {}}, {seed}, {}, {}, *labels).outcome,
                 SatOutcome::kSolved
             );
         }
@@ -223,7 +225,7 @@ TEST(SatSearch, PrefersLabelsByWeight) {
     const std::vector<Word> sets(sites, Word{3});
     std::vector<Label> labels(sites);
     ASSERT_EQ(
-        solve_by_sat(lonely, relations, sets, {weights, {}}, {5}, {}, {}, labels),
+        solve_by_sat(lonely, relations, sets, {weights, {}}, {5}, {}, {}, labels).outcome,
         SatOutcome::kSolved
     );
     const std::size_t ones = std::accumulate(labels.begin(), labels.end(), std::size_t{0});
@@ -245,7 +247,8 @@ struct Pigeons {
     SatOutcome solve(const SatLimits& limits, const std::stop_token& stop = {}) const {
         const SiteWeights weights{LabelWeights(std::vector<double>(sets.size() - 1, 1.0))};
         std::vector<Label> labels(sets.size());
-        return solve_by_sat(graph, relations, sets, {weights, {}}, {1}, limits, stop, labels);
+        return solve_by_sat(graph, relations, sets, {weights, {}}, {1}, limits, stop, labels)
+            .outcome;
     }
 
     GraphTopology graph;

@@ -1,0 +1,199 @@
+// The causes of a contradiction are found by taking out of the request what is not needed for it:
+// what is left of the request is asked again whether it has a model. So whatever a cause means is
+// said in one place, where requests are read.
+
+#include "solver/discrete/explanation/explain.h"
+
+#include "solver/discrete/explanation/cause.h"
+#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/conflict_cells.h"
+#include "solver/discrete/explanation/effort.h"
+#include "solver/discrete/explanation/irreducible.h"
+#include "solver/discrete/explanation/judge.h"
+#include "solver/discrete/names.h"
+#include "solver/discrete/problem.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace modelsynth::discrete {
+
+namespace {
+
+constexpr std::uint64_t kEffort = std::uint64_t{1} << 24;
+// Even the largest whole is looked at so many times.
+constexpr std::uint64_t kWholesMin = 8;
+// Cells that a person can look at.
+constexpr std::size_t kCellsMax = 32;
+constexpr std::size_t kCellsInWordsMax = 3;
+
+class Explainer {
+  public:
+    Explainer(const Example& example, const Parameters& parameters, const std::stop_token& stop)
+        : example_(example),
+          parameters_(parameters),
+          stop_(stop),
+          effort_(kEffort + kWholesMin * parameters.size->cell_count()) {}
+
+    // Nothing when no proof is found.
+    [[nodiscard]] std::optional<Error> explain() {
+        const std::vector<Cause> all = find_causes(example_, parameters_, read(parameters_));
+        if (verdict_of(all) != Verdict::kImpossible) {
+            return std::nullopt;
+        }
+        std::vector<Cause> causes =
+            find_irreducible(std::span<const Cause>(all), [this](std::span<const Cause> some) {
+                return verdict_of(some) == Verdict::kImpossible;
+            });
+        Conflict conflict;
+        conflict.is_minimal = confirm(causes);
+        name_causes(causes, conflict);
+        const Problem problem = problem_of(causes);
+        find_cells(causes, problem, conflict);
+        return Error{ErrorCode::kContradiction, in_words(causes, problem, conflict), {}, conflict};
+    }
+
+  private:
+    [[nodiscard]] Problem read(const Parameters& parameters) const {
+        auto problem = read_problem(example_, parameters);
+        check(problem.has_value(), "a request that was read before cannot be read");
+        return std::move(*problem);
+    }
+
+    [[nodiscard]] Problem problem_of(std::span<const Cause> causes) const {
+        return read(with_causes(example_, parameters_, causes));
+    }
+
+    Verdict verdict_of(std::span<const Cause> causes) {
+        if (!effort_.take(parameters_.size->cell_count()) || stop_.stop_requested()) {
+            return Verdict::kUnknown;
+        }
+        const Judgement judgement = judge_whole(example_, problem_of(causes), stop_);
+        effort_.spend(judgement.effort);
+        return judgement.verdict;
+    }
+
+    // Leaves out what can be left out still, and tells whether without any one of the rest there
+    // is a model.
+    [[nodiscard]] bool confirm(std::vector<Cause>& causes) {
+        bool is_minimal = true;
+        for (std::size_t i = 0; i < causes.size();) {
+            std::vector<Cause> others = causes;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+            const Verdict verdict = verdict_of(others);
+            if (verdict == Verdict::kImpossible) {
+                causes = std::move(others);
+                continue;
+            }
+            is_minimal = is_minimal && verdict == Verdict::kPossible;
+            ++i;
+        }
+        return is_minimal;
+    }
+
+    void name_causes(std::span<const Cause> causes, Conflict& conflict) const {
+        for (const Cause& cause : causes) {
+            switch (cause.kind) {
+                case Cause::Kind::kSide:
+                    conflict.sides.emplace_back(kSideNames.at(cause.number));
+                    break;
+                case Cause::Kind::kConstraint: {
+                    const Rule& rule = parameters_.constraints[cause.number].rule;
+                    conflict.constraints.push_back({cause.number, kRuleNames.at(rule.index())});
+                    break;
+                }
+                case Cause::Kind::kPeriodic:
+                    conflict.periodic.emplace_back(1, "xyz"[cause.number]);
+                    break;
+                case Cause::Kind::kRemoved:
+                    conflict.removed.push_back(example_.pieces[cause.number].name);
+                    break;
+            }
+        }
+    }
+
+    void find_cells(std::span<const Cause> causes, const Problem& problem, Conflict& conflict) {
+        std::vector<Cause> removed;
+        for (const Cause& cause : causes) {
+            if (cause.kind == Cause::Kind::kRemoved) {
+                removed.push_back(cause);
+            }
+        }
+        const LabelSet everything = problem_of(removed).domains.at(0);
+        const Judgement judgement = judge_whole(example_, problem, stop_);
+        const std::vector<Site> sites =
+            find_conflict_cells(problem, everything, judgement.emptied, effort_, stop_);
+        for (std::size_t i = 0; sites.size() <= kCellsMax && i < sites.size(); ++i) {
+            std::vector<std::string> labels;
+            for_each_label(problem.domains.words(sites[i]), [&](Label label) {
+                labels.push_back(example_.pieces[label].name);
+            });
+            conflict.cells.push_back({problem.size.cell(sites[i]), std::move(labels)});
+        }
+    }
+
+    [[nodiscard]] std::string in_words(
+        std::span<const Cause> causes, const Problem& problem, const Conflict& conflict
+    ) const {
+        std::string text = "no model of this size exists: ";
+        std::vector<std::string> names;
+        for (const Cause& cause : causes) {
+            names.push_back(name_cause(example_, parameters_, cause));
+        }
+        text += names.empty()       ? "the pieces of the example do not fit together so far"
+                : names.size() == 1 ? names.front() + " cannot hold"
+                                    : join_words(names) + " cannot hold together";
+        std::vector<std::string> cells;
+        for (const Conflict::NamedCell& place : conflict.cells) {
+            if (cells.size() == kCellsInWordsMax) {
+                cells.push_back(
+                    std::to_string(conflict.cells.size() - kCellsInWordsMax) + " more cells"
+                );
+                break;
+            }
+            cells.push_back(in_words(causes, problem, place));
+        }
+        return text + (cells.empty() ? "" : ", see " + join_words(cells));
+    }
+
+    [[nodiscard]] std::string in_words(
+        std::span<const Cause> causes, const Problem& problem, const Conflict::NamedCell& place
+    ) const {
+        const auto site = static_cast<Site>(parameters_.size->index(place.cell));
+        std::string text = "cell " + name_cell(place.cell);
+        if (!place.labels.empty()) {
+            return text + " (only " + list_names(example_, problem.domains.at(site)) + ")";
+        }
+        std::vector<std::string> demands;
+        for (const Cause& cause : causes) {
+            const LabelSet own = problem_of(std::span(&cause, 1)).domains.at(site);
+            demands.push_back(
+                "only " + list_names(example_, own) + " for " +
+                name_cause(example_, parameters_, cause)
+            );
+        }
+        return text + " (" + join_words(demands) + ")";
+    }
+
+    const Example& example_;
+    const Parameters& parameters_;
+    const std::stop_token& stop_;
+    Effort effort_;
+};
+
+}  // namespace
+
+Error explain(
+    Error error, const Example& example, const Parameters& parameters, const std::stop_token& stop
+) {
+    auto explained = Explainer(example, parameters, stop).explain();
+    if (stop.stop_requested()) {
+        return {ErrorCode::kCancelled, "stopped", {}};
+    }
+    return explained ? std::move(*explained) : std::move(error);
+}
+
+}  // namespace modelsynth::discrete
