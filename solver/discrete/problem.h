@@ -45,7 +45,8 @@ struct Problem {
 };
 
 // Requires: find_faults() found nothing (checked).
-// Fails:    kTooLarge for too many tables of weights. Some cell may be able to take no piece at all.
+// Ensures:  nothing of the domains: some cell may be able to take no piece at all.
+// Fails:    kTooLarge for too many tables of weights.
 [[nodiscard]] Result<Problem> read_problem(const Example& example, const Parameters& parameters);
 
 // The same, with something for every cell to take.
