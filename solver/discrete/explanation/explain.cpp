@@ -44,16 +44,24 @@ class Explainer {
         if (verdict_of(all) != Verdict::kImpossible) {
             return std::nullopt;
         }
+        // What leaves nothing to a cell is the plainest of all conflicts, though others may have
+        // fewer causes.
+        const bool is_plain = leaves_nothing(all);
         std::vector<Cause> causes =
-            find_irreducible(std::span<const Cause>(all), [this](std::span<const Cause> some) {
-                return verdict_of(some) == Verdict::kImpossible;
+            find_irreducible(std::span<const Cause>(all), [&](std::span<const Cause> some) {
+                return is_plain ? leaves_nothing(some) : verdict_of(some) == Verdict::kImpossible;
             });
         Conflict conflict;
-        conflict.is_minimal = confirm(causes);
+        std::vector<Cause> spare;
+        conflict.is_minimal = is_each_needed(causes, spare);
         name_causes(causes, conflict);
         const Problem problem = problem_of(causes);
         find_cells(causes, problem, conflict);
-        return Error{ErrorCode::kContradiction, in_words(causes, problem, conflict), {}, conflict};
+        return Error{
+            ErrorCode::kContradiction,
+            in_words(causes, problem, conflict) + in_words(spare),
+            {},
+            conflict};
     }
 
   private:
@@ -76,22 +84,35 @@ class Explainer {
         return judgement.verdict;
     }
 
-    // Leaves out what can be left out still, and tells whether without any one of the rest there
-    // is a model.
-    [[nodiscard]] bool confirm(std::vector<Cause>& causes) {
-        bool is_minimal = true;
-        for (std::size_t i = 0; i < causes.size();) {
-            std::vector<Cause> others = causes;
-            others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-            const Verdict verdict = verdict_of(others);
-            if (verdict == Verdict::kImpossible) {
-                causes = std::move(others);
-                continue;
-            }
-            is_minimal = is_minimal && verdict == Verdict::kPossible;
-            ++i;
+    // Whether the causes leave nothing to some cell.
+    [[nodiscard]] bool leaves_nothing(std::span<const Cause> causes) {
+        const std::size_t cells = parameters_.size->cell_count();
+        if (!effort_.take(cells)) {
+            return false;
         }
-        return is_minimal;
+        const Problem problem = problem_of(causes);
+        for (std::size_t site = 0; site < cells; ++site) {
+            if (problem.domains.at(static_cast<Site>(site)).empty()) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // Whether without any one of the causes there is a model, as far as that can be found out. Adds
+    // to `spare` those without which there is none either.
+    [[nodiscard]] bool is_each_needed(const std::vector<Cause>& causes, std::vector<Cause>& spare) {
+        bool is_each = true;
+        for (const Cause& cause : causes) {
+            std::vector<Cause> others = causes;
+            std::erase(others, cause);
+            const Verdict verdict = verdict_of(others);
+            is_each = is_each && verdict == Verdict::kPossible;
+            if (verdict == Verdict::kImpossible) {
+                spare.push_back(cause);
+            }
+        }
+        return is_each;
     }
 
     void name_causes(std::span<const Cause> causes, Conflict& conflict) const {
@@ -135,14 +156,27 @@ class Explainer {
         }
     }
 
-    [[nodiscard]] std::string in_words(
-        std::span<const Cause> causes, const Problem& problem, const Conflict& conflict
-    ) const {
-        std::string text = "no model of this size exists: ";
+    [[nodiscard]] std::vector<std::string> names_of(std::span<const Cause> causes) const {
         std::vector<std::string> names;
         for (const Cause& cause : causes) {
             names.push_back(name_cause(example_, parameters_, cause));
         }
+        return names;
+    }
+
+    [[nodiscard]] std::string in_words(std::span<const Cause> spare) const {
+        if (spare.empty()) {
+            return "";
+        }
+        return std::string("; without ") + (spare.size() == 1 ? "" : "any one of ") +
+               join_words(names_of(spare)) + " there is none either";
+    }
+
+    [[nodiscard]] std::string in_words(
+        std::span<const Cause> causes, const Problem& problem, const Conflict& conflict
+    ) const {
+        std::string text = "no model of this size exists: ";
+        const std::vector<std::string> names = names_of(causes);
         text += names.empty()       ? "the pieces of the example do not fit together so far"
                 : names.size() == 1 ? names.front() + " cannot hold"
                                     : join_words(names) + " cannot hold together";
