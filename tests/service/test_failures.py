@@ -100,7 +100,8 @@ def check_conflict(server, parameters, conflict, example):
     ({"constraints": [{"kind": "forbidden", "pieces": ["green"]}]}, set(), [0], [], []),
     ({"weights": {"green": 0}}, set(), [], [], ["green"]),
     # Stripes of three close on themselves after three cells only.
-    ({"boundary": {"west": "periodic", "east": "periodic", "north": "red"}, "size": [4, 2, 3]},
+    ({"boundary": {"west": "periodic", "east": "periodic"}, "size": [4, 2, 3],
+      "constraints": [{"kind": "fixed", "pieces": ["air"], "cells": [[1, 1, 1]]}]},
      set(), [], ["x"], []),
 ], ids=["apart", "fixed cells", "one constraint", "forbidden", "removed", "periodic"])
 def test_a_contradiction_names_the_fewest_causes(
@@ -162,7 +163,7 @@ def test_constraints_on_many_cells_are_named_with_what_they_cannot_hold_with(
     ({"boundary": {"bottom": "red", "west": "green", "top": "green"}}, {"bottom", "west"}, True),
     ({"boundary": {"bottom": "red", "top": "green"}, "size": [3, 1, 3]}, {"bottom", "top"}, True),
     # That stripes are all red is impossible by itself, but this is plainer.
-    ({"boundary": {"north": "red", "west": "blue", "east": ["air", "red"]}},
+    ({"boundary": {"north": "red", "west": "blue", "east": ["air", "red"], "top": "free"}},
      {"north", "west"}, False),
 ])
 def test_sides_that_leave_nothing_where_they_meet_are_both_named(
@@ -178,7 +179,8 @@ def test_sides_that_leave_nothing_where_they_meet_are_both_named(
 
 
 def test_where_nothing_is_left_the_cell_is_told_with_what_each_cause_wants(server):
-    error = fail(server, "contradiction", {"boundary": {"bottom": "red", "west": "blue"}})
+    error = fail(server, "contradiction", {
+        "boundary": {"bottom": "red", "west": "blue", "top": "free"}})
     place, = error["conflict"]["cells"]
     assert place["labels"] == [] and place["cell"][:2] == [0, 0]
     assert 'only "red" for the bottom side' in error["detail"]

@@ -29,6 +29,7 @@ constexpr std::uint64_t kWholesMin = 8;
 // Cells that a person can look at.
 constexpr std::size_t kCellsMax = 32;
 constexpr std::size_t kCellsInWordsMax = 3;
+constexpr std::size_t kDemandsMax = 8;
 
 class Explainer {
   public:
@@ -40,16 +41,17 @@ class Explainer {
 
     // Nothing when no proof is found.
     [[nodiscard]] std::optional<Error> explain() {
-        const std::vector<Cause> all = find_causes(example_, parameters_, read(parameters_));
-        if (verdict_of(all) != Verdict::kImpossible) {
+        all_ = find_causes(example_, parameters_, read(parameters_));
+        if (verdict_of(all_) != Verdict::kImpossible) {
             return std::nullopt;
         }
         // What leaves nothing to a cell is the plainest of all conflicts, though others may have
         // fewer causes.
-        const bool is_plain = leaves_nothing(all);
+        const std::optional<Site> empty = first_empty(problem_of(all_));
         std::vector<Cause> causes =
-            find_irreducible(std::span<const Cause>(all), [&](std::span<const Cause> some) {
-                return is_plain ? leaves_nothing(some) : verdict_of(some) == Verdict::kImpossible;
+            find_irreducible(std::span<const Cause>(all_), [&](std::span<const Cause> some) {
+                return empty ? leave_nothing(some, *empty)
+                             : verdict_of(some) == Verdict::kImpossible;
             });
         Conflict conflict;
         std::vector<Cause> spare;
@@ -84,19 +86,18 @@ class Explainer {
         return judgement.verdict;
     }
 
-    // Whether the causes leave nothing to some cell.
-    [[nodiscard]] bool leaves_nothing(std::span<const Cause> causes) {
-        const std::size_t cells = parameters_.size->cell_count();
-        if (!effort_.take(cells)) {
-            return false;
-        }
-        const Problem problem = problem_of(causes);
-        for (std::size_t site = 0; site < cells; ++site) {
+    static std::optional<Site> first_empty(const Problem& problem) {
+        for (std::size_t site = 0; site < problem.domains.site_count(); ++site) {
             if (problem.domains.at(static_cast<Site>(site)).empty()) {
-                return true;
+                return static_cast<Site>(site);
             }
         }
-        return false;
+        return std::nullopt;
+    }
+
+    [[nodiscard]] bool leave_nothing(std::span<const Cause> causes, Site site) {
+        return effort_.take(parameters_.size->cell_count()) &&
+               problem_of(causes).domains.at(site).empty();
     }
 
     // Whether without any one of the causes there is a model, as far as that can be found out. Adds
@@ -174,7 +175,7 @@ class Explainer {
 
     [[nodiscard]] std::string in_words(
         std::span<const Cause> causes, const Problem& problem, const Conflict& conflict
-    ) const {
+    ) {
         std::string text = "no model of this size exists: ";
         const std::vector<std::string> names = names_of(causes);
         text += names.empty()       ? "the pieces of the example do not fit together so far"
@@ -188,34 +189,46 @@ class Explainer {
                 );
                 break;
             }
-            cells.push_back(in_words(causes, problem, place));
+            cells.push_back(in_words(problem, place));
         }
         return text + (cells.empty() ? "" : ", see " + join_words(cells));
     }
 
-    [[nodiscard]] std::string in_words(
-        std::span<const Cause> causes, const Problem& problem, const Conflict::NamedCell& place
-    ) const {
+    [[nodiscard]] std::string in_words(const Problem& problem, const Conflict::NamedCell& place) {
         const auto site = static_cast<Site>(parameters_.size->index(place.cell));
         std::string text = "cell " + name_cell(place.cell);
         if (!place.labels.empty()) {
             return text + " (only " + list_names(example_, problem.domains.at(site)) + ")";
         }
+        const std::vector<std::string> demands = demands_at(site);
+        return demands.empty() ? text : text + " (" + join_words(demands) + ")";
+    }
+
+    // What each cause of the request wants at the cell, whether or not it takes part in the
+    // conflict: who has to change one of them may as well look at the others.
+    [[nodiscard]] std::vector<std::string> demands_at(Site site) {
+        const LabelSet everything = problem_of({}).domains.at(site);
         std::vector<std::string> demands;
-        for (const Cause& cause : causes) {
+        for (const Cause& cause : all_) {
+            if (demands.size() == kDemandsMax || !effort_.take(parameters_.size->cell_count())) {
+                break;
+            }
             const LabelSet own = problem_of(std::span(&cause, 1)).domains.at(site);
-            demands.push_back(
-                "only " + list_names(example_, own) + " for " +
-                name_cause(example_, parameters_, cause)
-            );
+            if (!(own == everything)) {
+                demands.push_back(
+                    "only " + list_names(example_, own) + " for " +
+                    name_cause(example_, parameters_, cause)
+                );
+            }
         }
-        return text + " (" + join_words(demands) + ")";
+        return demands;
     }
 
     const Example& example_;
     const Parameters& parameters_;
     const std::stop_token& stop_;
     Effort effort_;
+    std::vector<Cause> all_;
 };
 
 }  // namespace
