@@ -40,6 +40,7 @@ OrderedJson document_of(const discrete::Conflict& conflict) {
         {"constraints", std::move(constraints)},
         {"periodic", conflict.periodic},
         {"removed", conflict.removed},
+        {"origin", conflict.has_origin},
         {"cells", std::move(cells)},
         {"minimal", conflict.is_minimal}};
 }

@@ -2,6 +2,7 @@
 
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/label_chooser.h"
 #include "solver/core/random.h"
 #include "solver/core/site_weights.h"
 
@@ -137,6 +138,15 @@ struct SearchBudget {
     std::uint32_t backtracks = 0;  // choices taken back; 0: the first dead end is the end
 };
 
+// What a search may have beside relations and weights; null: none.
+struct SearchAids {
+    ConstraintBoard* board = nullptr;  // the constraints beside the relations; follows the catalog
+    PartChooser* chooser = nullptr;    // chooses labels in place of the weights alone
+    // By site, counted up where a choice before was found wrong: at the site that had no label
+    // left, with a board at the one whose labels were tried. Empty: not counted.
+    std::span<std::uint32_t> dead_ends = {};
+};
+
 // The loop of Algorithm 3.1 over an arc-consistent catalog: pick a site, draw a label, propagate.
 // A label that propagation refutes is taken back and removed, which keeps the catalog an outer
 // bound of the ideal one. When its removal is refuted too, the choices before lead nowhere.
@@ -149,26 +159,22 @@ struct SearchBudget {
 template <class CatalogType, class Picker>
 class Search {
   public:
-    // `board`: the constraints beside the relations, which follow the catalog; null: none.
-    // `dead_ends`: by site, counted up where the search found that a choice before was wrong: the
-    // site that had no label left, with a board the one whose labels were tried. Empty: not
-    // counted.
     Search(
         CatalogType& catalog,
         Picker& picker,
         const PartWeights& weights,
-        ConstraintBoard* board,
+        const SearchAids& aids,
         RandomStream& random,
-        std::stop_token stop,
-        std::span<std::uint32_t> dead_ends = {}
+        std::stop_token stop
     )
         : catalog_(catalog),
           picker_(picker),
           weights_(weights),
-          board_(board),
+          board_(aids.board),
+          chooser_(aids.chooser),
+          dead_ends_(aids.dead_ends),
           random_(random),
-          stop_(std::move(stop)),
-          dead_ends_(dead_ends) {}
+          stop_(std::move(stop)) {}
 
     [[nodiscard]] SearchOutcome run(const SearchBudget& budget) {
         Site site = 0;
@@ -176,7 +182,7 @@ class Search {
             if (stop_.stop_requested()) {
                 return SearchOutcome::kStopped;
             }
-            const Label label = weights_.at(site).draw(catalog_.labels(site), random_);
+            const Label label = choose(site);
             const auto mark = catalog_.mark();
             const std::size_t position = picker_.position();
             catalog_.assign(site, label);
@@ -223,6 +229,12 @@ class Search {
     static constexpr std::uint32_t kPatience = 10;
     static constexpr std::size_t kFirstJump = 4;
     static constexpr std::uint32_t kJumpDoublingsMax = 10;
+
+    Label choose(Site site) {
+        const LabelWeights& weights = weights_.at(site);
+        return chooser_ == nullptr ? weights.draw(catalog_.labels(site), random_)
+                                   : chooser_->choose(catalog_, site, weights, random_);
+    }
 
     Propagation refute(Site site, Label label) {
         const Propagation propagation =
@@ -281,9 +293,10 @@ class Search {
     Picker& picker_;
     PartWeights weights_;
     ConstraintBoard* board_;
+    PartChooser* chooser_;
+    std::span<std::uint32_t> dead_ends_;
     RandomStream& random_;
     std::stop_token stop_;
-    std::span<std::uint32_t> dead_ends_;
     std::vector<Choice> choices_;
     std::uint32_t backtracks_ = 0;
     std::size_t deepest_ = 0;

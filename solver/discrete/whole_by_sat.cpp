@@ -1,22 +1,26 @@
 #include "solver/discrete/whole_by_sat.h"
 
 #include "solver/core/catalog.h"
-#include "solver/core/grid_topology.h"
+#include "solver/discrete/problem_part.h"
 
 #include <utility>
 
 namespace modelsynth::discrete {
 
-WholeBySat solve_whole_by_sat(
-    const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+namespace {
+
+constexpr SatLimits kLimits;
+
+template <Topology T>
+WholeBySat solve(
+    const Problem& problem,
+    const T& topology,
+    const Relations& relations,
+    std::uint64_t seed,
+    const std::stop_token& stop
 ) {
-    constexpr SatLimits kLimits;
     const std::size_t cells = problem.size.cell_count();
-    if (cells > kLimits.literals_max) {
-        return {};
-    }
-    const GridTopology topology(problem.size, problem.periodic);
-    Catalog<GridTopology, 0> catalog(topology, problem.relations);
+    Catalog<T, 0> catalog(topology, relations);
     std::vector<std::uint16_t> tables(cells);
     std::vector<Word> sets;
     sets.reserve(catalog.all_labels().size());
@@ -40,7 +44,7 @@ WholeBySat solve_whole_by_sat(
     whole.labels.resize(cells);
     whole.result = solve_by_sat(
         topology,
-        problem.relations,
+        relations,
         catalog.all_labels(),
         {problem.weights, tables},
         {seed},
@@ -49,6 +53,20 @@ WholeBySat solve_whole_by_sat(
         whole.labels
     );
     return whole;
+}
+
+}  // namespace
+
+WholeBySat solve_whole_by_sat(
+    const Problem& problem, std::uint64_t seed, const std::stop_token& stop
+) {
+    if (problem.size.cell_count() > kLimits.literals_max) {
+        return {};
+    }
+    const Box whole = Box::whole(problem.size);
+    return with_part(problem, whole, [&](const auto& part, const Relations& relations) {
+        return solve(problem, part.inner(), relations, seed, stop);
+    });
 }
 
 Result<std::optional<std::vector<Label>>> settle_by_sat(

@@ -3,8 +3,10 @@
 #include "solver/core/grid.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
+#include "solver/core/synthesis_stats.h"
 #include "solver/discrete/analysis/analysis.h"
 #include "solver/discrete/example.h"
+#include "solver/discrete/origin.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/preparation.h"
 #include "solver/mesh/scene.h"
@@ -33,12 +35,6 @@ struct Model {
     std::vector<Label> labels;  // x fastest, then z, then y
 };
 
-// What result.stats tells of a finished synthesis, beside the time it took.
-struct SynthesisStats {
-    SearchTally blocks;
-    double changed = 0;  // share of sites that differ from the initial model
-};
-
 struct Finished {
     Model model;
     SynthesisStats stats;
@@ -56,6 +52,7 @@ struct Task {
     Example example;
     Parameters parameters;  // defaults filled in
     std::uint64_t seed = 0;
+    std::shared_ptr<const discrete::Origin> origin = nullptr;  // null: made from nothing
 };
 
 [[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);

@@ -68,7 +68,8 @@ def parts(conflict):
 
 def check_conflict(server, parameters, conflict, example):
     """That the causes are in conflict, that each is needed, and that it shows at the cells."""
-    assert set(conflict) == {"sides", "constraints", "periodic", "removed", "cells", "minimal"}
+    assert set(conflict) == {"sides", "constraints", "periodic", "removed", "origin", "cells",
+                             "minimal"}
     for constraint in conflict["constraints"]:
         assert parameters["constraints"][constraint["index"]]["kind"] == constraint["kind"]
     fail(server, "contradiction", only(parameters, conflict), example=example)
@@ -204,7 +205,7 @@ def test_an_example_that_cannot_fill_a_size_is_to_blame_by_itself(server):
             "size": [2, 1, 1], "cells": [0, 1]}
     error = fail(server, "contradiction", {"size": [3, 1, 1]}, example=line)
     assert error["conflict"] == {"sides": [], "constraints": [], "periodic": [], "removed": [],
-                                 "cells": [], "minimal": True}
+                                 "origin": False, "cells": [], "minimal": True}
 
 
 # --- what only CaDiCaL decides

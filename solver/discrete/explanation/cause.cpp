@@ -9,10 +9,12 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// A probability other than 0 leaves every model possible.
+// Others only prefer some models to others, as a probability other than 0.
 bool is_cause(const Constraint& constraint) {
     const auto* probability = std::get_if<Probability>(&constraint.rule);
-    return probability == nullptr || probability->weight == 0;
+    return probability != nullptr
+               ? probability->weight == 0
+               : names_pieces(constraint.rule) || std::holds_alternative<Symmetry>(constraint.rule);
 }
 
 constexpr std::size_t axis_of(std::size_t side) { return side / 2; }
@@ -33,6 +35,9 @@ std::vector<Cause> find_causes(
         if (is_cause(parameters.constraints[i])) {
             causes.push_back({Cause::Kind::kConstraint, i});
         }
+    }
+    if (problem.start) {
+        causes.push_back({Cause::Kind::kOrigin, 0});
     }
     for (std::size_t side = 0; side < kDirectionCount; side += 2) {
         if (parameters.boundary[side]->kind == BoundaryKind::kPeriodic) {
@@ -87,6 +92,8 @@ std::string name_cause(const Example& example, const Parameters& parameters, con
             const LabelSet pieces = set_of(labels_by_name(example), constraint.pieces);
             return name_rule(example, {cause.number, constraint.rule, pieces, {}});
         }
+        case Cause::Kind::kOrigin:
+            return "what is kept of the model that this one starts from";
         case Cause::Kind::kPeriodic:
             return std::string("the periodic ") + "xyz"[cause.number] + " axis";
         case Cause::Kind::kRemoved:

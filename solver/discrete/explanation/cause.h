@@ -17,6 +17,7 @@ struct Cause {
     enum class Kind : std::uint8_t {
         kSide,        // what may stand on a side
         kConstraint,  // a constraint
+        kOrigin,      // what is kept of the model that this one starts from
         kPeriodic,    // that an axis closes on itself
         kRemoved,     // that a piece has weight 0
     };
@@ -33,8 +34,8 @@ struct Cause {
     const Example& example, const Parameters& parameters, const Problem& problem
 );
 
-// The request with these causes and without all others. Whether there is a model is then a question
-// of the example, the size and the causes alone.
+// The request with these causes and without all others, but for the origin, which is no parameter.
+// Whether there is a model is then a question of the example, the size and the causes alone.
 [[nodiscard]] Parameters with_causes(
     const Example& example, const Parameters& parameters, std::span<const Cause> causes
 );

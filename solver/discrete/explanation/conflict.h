@@ -27,6 +27,7 @@ struct Conflict {
     std::vector<NamedConstraint> constraints;
     std::vector<std::string> periodic;  // axes
     std::vector<std::string> removed;   // pieces of weight 0
+    bool has_origin = false;            // what is kept of the model that this one starts from
 
     // Where it shows: were all other cells free to take any piece, these could not all take one of
     // theirs. Not all of them need be neighbours. Empty: it needs no cell, or too many to look at.

@@ -2,11 +2,12 @@
 
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
-#include "solver/core/grid_topology.h"
 #include "solver/core/sat/label_formula.h"
 #include "solver/core/sat/sat_search.h"
+#include "solver/core/topology.h"
 #include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/explanation/irreducible.h"
+#include "solver/discrete/problem_part.h"
 
 #include <algorithm>
 #include <memory>
@@ -17,21 +18,26 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// Propagation in a box whose surroundings are open, while only some of its cells are held to what
+// A cell whose domain says anything.
+struct Narrowed {
+    Site inside = 0;  // of the part
+    Site whole = 0;
+};
+
+// Propagation in a part whose surroundings are open, while only some of its cells are held to what
 // their domains say. In the whole the member rules take part.
-class BoxPropagation {
+template <TopologyPart Part>
+class PartPropagation {
   public:
-    BoxPropagation(
+    PartPropagation(
         const Problem& problem,
         const LabelSet& everything,
-        const Box& box,
+        const Part& part,
+        const Relations& relations,
         const std::stop_token& stop
     )
-        : problem_(problem),
-          part_(problem.size, problem.periodic, box),
-          catalog_(part_.inner(), problem.relations),
-          stop_(stop) {
-        if (box == Box::whole(problem.size) && !problem.member_rules.empty()) {
+        : problem_(problem), part_(part), catalog_(part_.inner(), relations), stop_(stop) {
+        if (catalog_.site_count() == problem.size.cell_count() && !problem.member_rules.empty()) {
             board_ = make_board(problem, problem.member_rules);
             open_.assign(problem.size.cell_count(), kNoLabel);
             board_->start(open_);
@@ -47,12 +53,6 @@ class BoxPropagation {
         });
     }
 
-    struct Narrowed {
-        Site inside = 0;
-        Site whole = 0;
-    };
-
-    // The cells whose domains say anything.
     [[nodiscard]] const std::vector<Narrowed>& narrowed() const { return narrowed_; }
 
     [[nodiscard]] bool is_conflict(std::span<const Narrowed> held) {
@@ -76,8 +76,8 @@ class BoxPropagation {
 
   private:
     const Problem& problem_;
-    GridPart part_;
-    Catalog<GridTopology, 0> catalog_;
+    const Part& part_;
+    Catalog<typename Part::Inner, 0> catalog_;
     const std::stop_token& stop_;
     std::unique_ptr<ConstraintBoard> board_;
     std::vector<Label> open_;
@@ -96,17 +96,18 @@ Box box_around(const GridSize& size, const Cell& centre, std::int32_t reach) {
     return {{west, bottom, north}, {east, top, south}};
 }
 
-// Nothing when propagation in the box sees no conflict.
+// Nothing when propagation sees no conflict.
+template <TopologyPart Part>
 std::optional<std::vector<Site>> find_by_propagation(
     const Problem& problem,
     const LabelSet& everything,
-    const Box& box,
+    const Part& part,
+    const Relations& relations,
     Effort& effort,
     const std::stop_token& stop
 ) {
-    using Narrowed = BoxPropagation::Narrowed;
-    BoxPropagation propagation(problem, everything, box, stop);
-    const std::size_t cells = box.size().cell_count();
+    PartPropagation<Part> propagation(problem, everything, part, relations, stop);
+    const std::size_t cells = part.inner().site_count();
     const auto is_conflict = [&](std::span<const Narrowed> held) {
         return effort.take(cells) && propagation.is_conflict(held);
     };
@@ -123,19 +124,24 @@ std::optional<std::vector<Site>> find_by_propagation(
 
 // By CaDiCaL: a guard for each cell whose domain says anything. The core of the first proof leaves
 // few of them.
+template <Topology T>
 std::vector<Site> find_by_sat(
-    const Problem& problem, const LabelSet& everything, Effort& effort, const std::stop_token& stop
+    const Problem& problem,
+    const LabelSet& everything,
+    const T& topology,
+    const Relations& relations,
+    Effort& effort,
+    const std::stop_token& stop
 ) {
     using Guard = LabelFormula::Guard;
     constexpr SatLimits kLimits;
-    const GridTopology topology(problem.size, problem.periodic);
-    Catalog<GridTopology, 0> catalog(topology, problem.relations);
+    Catalog<T, 0> catalog(topology, relations);
     catalog.fill(everything.words());
     catalog.enqueue_all();
     if (catalog.propagate(stop) != Propagation::kConsistent) {
         return {};
     }
-    LabelFormula formula(problem.relations, catalog.all_labels(), kLimits.literals_max, 0);
+    LabelFormula formula(relations, catalog.all_labels(), kLimits.literals_max, 0);
     formula.add_arcs(topology);
     if (formula.is_too_large() || !effort.take(formula.literal_count())) {
         return {};
@@ -183,7 +189,9 @@ std::vector<Site> find_conflict_cells(
     const Box whole = Box::whole(problem.size);
     std::vector<Site> sites;
     const auto look_in = [&](const Box& box) {
-        auto found = find_by_propagation(problem, everything, box, effort, stop);
+        auto found = with_part(problem, box, [&](const auto& part, const Relations& relations) {
+            return find_by_propagation(problem, everything, part, relations, effort, stop);
+        });
         sites = found ? std::move(*found) : std::vector<Site>();
         return found.has_value();
     };
@@ -198,7 +206,9 @@ std::vector<Site> find_conflict_cells(
         found = look_in(whole);
     }
     if (!found) {
-        sites = find_by_sat(problem, everything, effort, stop);
+        sites = with_part(problem, whole, [&](const auto& part, const Relations& relations) {
+            return find_by_sat(problem, everything, part.inner(), relations, effort, stop);
+        });
     }
     std::sort(sites.begin(), sites.end());
     return sites;

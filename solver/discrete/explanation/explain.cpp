@@ -13,6 +13,7 @@
 #include "solver/discrete/names.h"
 #include "solver/discrete/problem.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,21 +34,27 @@ constexpr std::size_t kDemandsMax = 8;
 
 class Explainer {
   public:
-    Explainer(const Example& example, const Parameters& parameters, const std::stop_token& stop)
+    Explainer(
+        const Example& example,
+        const Parameters& parameters,
+        const Problem& problem,
+        const std::stop_token& stop
+    )
         : example_(example),
           parameters_(parameters),
+          problem_(problem),
+          all_(find_causes(example, parameters, problem)),
           stop_(stop),
           effort_(kEffort + kWholesMin * parameters.size->cell_count()) {}
 
     // Nothing when no proof is found.
     [[nodiscard]] std::optional<Error> explain() {
-        all_ = find_causes(example_, parameters_, read(parameters_));
         if (verdict_of(all_) != Verdict::kImpossible) {
             return std::nullopt;
         }
         // What leaves nothing to a cell is the plainest of all conflicts, though others may have
         // fewer causes.
-        const std::optional<Site> empty = first_empty(problem_of(all_));
+        const std::optional<Site> empty = first_empty(problem_);
         std::vector<Cause> causes =
             find_irreducible(std::span<const Cause>(all_), [&](std::span<const Cause> some) {
                 return empty ? leave_nothing(some, *empty)
@@ -67,14 +74,14 @@ class Explainer {
     }
 
   private:
-    [[nodiscard]] Problem read(const Parameters& parameters) const {
-        auto problem = read_problem(example_, parameters);
-        check(problem.has_value(), "a request that was read before cannot be read");
-        return std::move(*problem);
-    }
-
+    // What the request comes to with these causes alone.
     [[nodiscard]] Problem problem_of(std::span<const Cause> causes) const {
-        return read(with_causes(example_, parameters_, causes));
+        auto problem = read_problem(example_, with_causes(example_, parameters_, causes));
+        check(problem.has_value(), "a request that was read before cannot be read");
+        if (std::find(causes.begin(), causes.end(), Cause{Cause::Kind::kOrigin}) != causes.end()) {
+            narrow_to_kept(*problem_.start, problem->domains);
+        }
+        return std::move(*problem);
     }
 
     Verdict verdict_of(std::span<const Cause> causes) {
@@ -127,6 +134,9 @@ class Explainer {
                     conflict.constraints.push_back({cause.number, kRuleNames.at(rule.index())});
                     break;
                 }
+                case Cause::Kind::kOrigin:
+                    conflict.has_origin = true;
+                    break;
                 case Cause::Kind::kPeriodic:
                     conflict.periodic.emplace_back(1, "xyz"[cause.number]);
                     break;
@@ -226,17 +236,22 @@ class Explainer {
 
     const Example& example_;
     const Parameters& parameters_;
+    const Problem& problem_;
+    std::vector<Cause> all_;
     const std::stop_token& stop_;
     Effort effort_;
-    std::vector<Cause> all_;
 };
 
 }  // namespace
 
 Error explain(
-    Error error, const Example& example, const Parameters& parameters, const std::stop_token& stop
+    Error error,
+    const Example& example,
+    const Parameters& parameters,
+    const Problem& problem,
+    const std::stop_token& stop
 ) {
-    auto explained = Explainer(example, parameters, stop).explain();
+    auto explained = Explainer(example, parameters, problem, stop).explain();
     if (stop.stop_requested()) {
         return {ErrorCode::kCancelled, "stopped", {}};
     }

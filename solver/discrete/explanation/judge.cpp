@@ -1,6 +1,6 @@
 #include "solver/discrete/explanation/judge.h"
 
-#include "solver/core/block_search.h"
+#include "solver/discrete/box_search.h"
 #include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/explanation/effort.h"
 #include "solver/discrete/initial_model.h"
@@ -25,18 +25,16 @@ Judgement judge_whole(const Example& example, const Problem& problem, const std:
         judgement.verdict = Verdict::kPossible;
         return judgement;
     }
-    const GridPart whole(problem.size, problem.periodic, Box::whole(problem.size));
-    const std::vector<Site> scan = column_order(problem.size);
-    BlockSearch<GridPart> search(problem.relations, problem.domains, problem.weights);
+    BoxSearch search(problem);
     std::vector<Label> model(problem.size.cell_count(), kNoLabel);
     std::unique_ptr<ConstraintBoard> board;
-    BlockOptions options = {kAttempts, Order::kScan, scan};
+    BoxOptions options = {kAttempts};
     if (has_rules) {
         board = make_board(problem, problem.member_rules);
         board->start(model);
         options.board = board.get();
     }
-    const BlockResult result = search.modify(whole, model, options, {}, stop);
+    const BlockResult result = search.modify(Box::whole(problem.size), model, options, {}, stop);
     if (result.outcome == BlockOutcome::kAccepted) {
         judgement.verdict = Verdict::kPossible;
     } else if (result.outcome == BlockOutcome::kImpossible) {

@@ -17,19 +17,16 @@
 namespace modelsynth {
 namespace {
 
-using testing::GraphTopology;
-
 // A random graph, loops and double arcs too, of labels that few pairs of may be neighbours.
 struct Tiny {
     explicit Tiny(std::uint64_t seed)
         : random({seed, 0, 0, 97}),
           label_count(2 + random.below(9)),
-          graph(2 + random.below(5)),
+          graph(random_graph()),
           relations(label_count, {1, 0, 2}),
           sets(graph.site_count() * relations.words()),
           weights(LabelWeights(std::vector<double>(label_count, 1.0))) {
         const auto labels = static_cast<std::uint32_t>(label_count);
-        const auto sites = static_cast<std::uint32_t>(graph.site_count());
         const std::uint32_t share = 1 + random.below(5);
         for (Label a = 0; a < label_count; ++a) {
             for (Label b = 0; b < label_count; ++b) {
@@ -40,18 +37,24 @@ struct Tiny {
                 }
             }
         }
-        const std::uint32_t arcs = 1 + random.below(2 * sites);
-        for (std::uint32_t arc = 0; arc < arcs; ++arc) {
-            const Site a = random.below(sites);
-            const Site b = random.below(sites);
-            random.below(3) == 0 ? graph.join(a, b, 2, 2) : graph.join(a, b, 0, 1);
-        }
         for (Word& set : sets) {
             set = LabelSet::all(label_count).words()[0];
             if (random.below(3) == 0) {
                 set &= Word{random.below(1U << labels)};
             }
         }
+    }
+
+    GraphTopology random_graph() {
+        const std::uint32_t sites = 2 + random.below(5);
+        std::vector<GraphArc> arcs(1 + random.below(2 * sites));
+        for (GraphArc& arc : arcs) {
+            const bool is_alike = random.below(3) == 0;
+            arc = {random.below(sites), random.below(sites), 0, 1};
+            arc.from_a = is_alike ? 2 : 0;
+            arc.from_b = is_alike ? 2 : 1;
+        }
+        return {sites, arcs};
     }
 
     [[nodiscard]] bool fits(const std::vector<Label>& labels, Site site) const {
@@ -193,10 +196,11 @@ TEST(SatSearch, SolvesWhatTheSearchSolves) {
 
 TEST(SatSearch, EqualSeedsGiveEqualModelsAndOthersOthers) {
     const std::size_t sites = 40;
-    GraphTopology ring(sites);
+    std::vector<GraphArc> arcs;
     for (Site site = 0; site < sites; ++site) {
-        ring.join(site, (site + 1) % sites, 0, 0);
+        arcs.push_back({site, static_cast<Site>((site + 1) % sites), 0, 0});
     }
+    const GraphTopology ring(sites, arcs);
     const Relations relations = testing::make_colouring(4);
     const SiteWeights weights{LabelWeights(std::vector<double>{1, 1, 1, 1})};
     const std::vector<Word> sets(sites, Word{15});
@@ -219,7 +223,7 @@ TEST(SatSearch, EqualSeedsGiveEqualModelsAndOthersOthers) {
 // Where neighbours need not differ, each label is as often as its weight asks, more or less.
 TEST(SatSearch, PrefersLabelsByWeight) {
     const std::size_t sites = 1000;
-    const GraphTopology lonely(sites);
+    const GraphTopology lonely(sites, {});
     const Relations relations = testing::make_colouring(2);
     const SiteWeights weights{LabelWeights(std::vector<double>{1, 3})};
     const std::vector<Word> sets(sites, Word{3});
@@ -235,13 +239,18 @@ TEST(SatSearch, PrefersLabelsByWeight) {
 // Pigeons and holes: n + 1 sites that all differ and n labels, hard for resolution.
 struct Pigeons {
     explicit Pigeons(std::size_t holes)
-        : graph(holes + 1), relations(testing::make_colouring(holes)), sets(holes + 1) {
-        for (Site a = 0; a <= holes; ++a) {
-            sets[a] = (Word{1} << holes) - 1;
+        : graph(all_joined(holes + 1)),
+          relations(testing::make_colouring(holes)),
+          sets(holes + 1, (Word{1} << holes) - 1) {}
+
+    static GraphTopology all_joined(std::size_t sites) {
+        std::vector<GraphArc> arcs;
+        for (Site a = 0; a < sites; ++a) {
             for (Site b = 0; b < a; ++b) {
-                graph.join(a, b, 0, 0);
+                arcs.push_back({a, b, 0, 0});
             }
         }
+        return {sites, arcs};
     }
 
     SatOutcome solve(const SatLimits& limits, const std::stop_token& stop = {}) const {
