@@ -46,6 +46,9 @@ struct RequestLimits {
 // Faults listed in one problem.
 inline constexpr std::size_t kFaultsMax = 50;
 
+// Labels listed for one cell of a conflict.
+inline constexpr std::size_t kLabelsListedMax = 64;
+
 // Seeds survive JavaScript's numbers.
 inline constexpr std::uint64_t kSeedMax = (std::uint64_t{1} << 53) - 1;
 

@@ -1,5 +1,6 @@
 #include "proto/problem.h"
 
+#include "proto/explanation_codec.h"
 #include "proto/json.h"
 #include "proto/limits.h"
 
@@ -83,12 +84,16 @@ const std::vector<ProblemKind>& problem_kinds() {
          "No such model exists",
          422,
          "It was proved that no model of this size can satisfy the example, the boundary and the "
-         "constraints together."},
+         "constraints together. The member conflict has the fewest sides, constraints (by their "
+         "index), periodic axes and removed pieces found that cannot hold together, and cells with "
+         "the labels that these leave to them at which it shows. It is minimal when there is a "
+         "model without any one of them."},
         {"gave-up",
          "No model was found",
          422,
          "No model was found within the attempts; one may exist. Smaller blocks, free sides or "
-         "another seed help."},
+         "another seed help. The member hottest has the cells where the attempts met dead ends, "
+         "the most often first, and how many times."},
         {"deadline-exceeded",
          "The deadline passed",
          422,
@@ -133,6 +138,7 @@ Problem problem_of(const Error& error) {
     };
     Problem problem = make_problem(kind(), error.message);
     problem.errors = error.faults;
+    problem.explanation = error.explanation;
     return problem;
 }
 
@@ -185,6 +191,7 @@ std::string to_json(const Problem& problem) {
         }
         document["errors"] = std::move(errors);
     }
+    add_explanation(document, problem.explanation);
     return dump(document);
 }
 

@@ -4,6 +4,7 @@
 
 #include <tl/expected.hpp>
 
+#include <any>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Problem {
     std::string detail;
     std::string instance = {};  // path of the resource it is about
     std::vector<Fault> errors = {};
+    std::any explanation = {};  // as of Error, or nothing; told by extension members
 };
 
 template <class T>

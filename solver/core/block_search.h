@@ -54,7 +54,8 @@ struct BlockOptions {
     // their board stands with it; the same is so afterwards. Null: none.
     ConstraintBoard* board = nullptr;
     std::optional<Pin> pin = std::nullopt;
-    const LabelChooser* chooser = nullptr;  // in place of the weights alone; null: none
+    const LabelChooser* chooser = nullptr;    // in place of the weights alone; null: none
+    std::span<std::uint32_t> dead_ends = {};  // by site of the part, as of SearchAids
 };
 
 // How an attempt at a block goes about it.
@@ -366,7 +367,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         RandomStream random(key);
         const PartWeights weights = {weights_, weight_numbers_};
         const auto with = [&](auto picker) {
-            Search search(*catalog_, picker, weights, {options.board, chooser}, random, stop);
+            const SearchAids aids = {options.board, chooser, options.dead_ends};
+            Search search(*catalog_, picker, weights, aids, random, stop);
             const SearchOutcome outcome = search.run(plan.budget);
             backtracks += search.backtracks();
             return outcome;

@@ -2,6 +2,7 @@
 
 #include <tl/expected.hpp>
 
+#include <any>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct Error {
     ErrorCode code = ErrorCode::kInternal;
     std::string message;
     std::vector<Fault> faults = {};
+    // What a program can make use of beyond that: a plain type of the solver that failed, or
+    // nothing.
+    std::any explanation = {};
 };
 
 template <class T>

@@ -142,6 +142,9 @@ struct SearchBudget {
 struct SearchAids {
     ConstraintBoard* board = nullptr;  // the constraints beside the relations; follows the catalog
     PartChooser* chooser = nullptr;    // chooses labels in place of the weights alone
+    // By site, counted up where a choice before was found wrong: at the site that had no label
+    // left, with a board at the one whose labels were tried. Empty: not counted.
+    std::span<std::uint32_t> dead_ends = {};
 };
 
 // The loop of Algorithm 3.1 over an arc-consistent catalog: pick a site, draw a label, propagate.
@@ -169,6 +172,7 @@ class Search {
           weights_(weights),
           board_(aids.board),
           chooser_(aids.chooser),
+          dead_ends_(aids.dead_ends),
           random_(random),
           stop_(std::move(stop)) {}
 
@@ -233,7 +237,12 @@ class Search {
     }
 
     Propagation refute(Site site, Label label) {
-        return catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
+        const Propagation propagation =
+            catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
+        if (propagation == Propagation::kContradiction && !dead_ends_.empty()) {
+            ++dead_ends_[board_ == nullptr ? catalog_.emptied_site() : site];
+        }
+        return propagation;
     }
 
     Propagation propagate() {
@@ -285,6 +294,7 @@ class Search {
     PartWeights weights_;
     ConstraintBoard* board_;
     PartChooser* chooser_;
+    std::span<std::uint32_t> dead_ends_;
     RandomStream& random_;
     std::stop_token stop_;
     std::vector<Choice> choices_;

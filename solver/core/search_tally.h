@@ -13,10 +13,11 @@ enum class SolvedBy : std::uint8_t {
     kBacktracking,  // choices were taken back
     kOtherOrder,    // another order of sites
     kRestart,       // the same order once more, with other random numbers
+    kSat,           // the back end over CaDiCaL, where every attempt failed
 };
-inline constexpr std::size_t kSolvedByCount = 4;
+inline constexpr std::size_t kSolvedByCount = 5;
 inline constexpr std::array<const char*, kSolvedByCount> kSolvedByNames = {
-    "first_try", "backtracking", "other_order", "restart"};
+    "first_try", "backtracking", "other_order", "restart", "sat"};
 
 // What became of the blocks of a model so far.
 struct SearchTally {

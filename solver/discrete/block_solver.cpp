@@ -23,7 +23,11 @@ void BlockSolver::begin(std::span<const Label> labels) {
 }
 
 BlockResult BlockSolver::modify(
-    std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
+    std::span<Label> labels,
+    const Box& block,
+    std::uint32_t index,
+    std::uint32_t attempts,
+    std::span<std::uint32_t> dead_ends
 ) {
     if (stop_.stop_requested()) {
         return {BlockOutcome::kStopped};
@@ -35,7 +39,8 @@ BlockResult BlockSolver::modify(
          preparation_.parameters().order,
          board_.get(),
          std::nullopt,
-         preparation_.problem().chooser.get()},
+         preparation_.problem().chooser.get(),
+         dead_ends},
         {seed_, index, 0, 0},
         stop_
     );

@@ -30,7 +30,11 @@ class BlockSolver {
 
     // As BoxSearch::modify(), under the member rules once begin() was called.
     [[nodiscard]] BlockResult modify(
-        std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
+        std::span<Label> labels,
+        const Box& block,
+        std::uint32_t index,
+        std::uint32_t attempts,
+        std::span<std::uint32_t> dead_ends = {}
     );
 
     // The block has other labels again than modify() left.

@@ -55,6 +55,7 @@ BlockResult BoxSearch::modify(
     const std::span<const Site> scan = scan_of(box.size());
     BlockOptions inner = {options.attempts, options.order, scan, options.board};
     inner.chooser = options.chooser;
+    inner.dead_ends = options.dead_ends;
     if (!on_graph_) {
         if (options.pin) {
             const Cell cell = options.pin->cell;

@@ -29,6 +29,8 @@ struct BoxOptions {
     ConstraintBoard* board = nullptr;
     std::optional<Pin> pin = std::nullopt;
     const LabelChooser* chooser = nullptr;  // as of BlockOptions
+    // As of BlockOptions, for the whole alone: by cell of it.
+    std::span<std::uint32_t> dead_ends = {};
 };
 
 // Makes boxes of a problem's models anew, whatever else has to change with them: the images of

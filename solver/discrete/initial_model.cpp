@@ -1,12 +1,14 @@
 #include "solver/discrete/initial_model.h"
 
 #include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/explanation/conflict.h"
 #include "solver/discrete/mender.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/plain_layers.h"
 #include "solver/discrete/planting.h"
 #include "solver/discrete/repeated_tile.h"
 #include "solver/discrete/search_keys.h"
+#include "solver/discrete/whole_by_sat.h"
 
 #include <algorithm>
 #include <optional>
@@ -107,10 +109,17 @@ class Finder {
         if (!model) {
             return tl::unexpected(std::move(model.error()));
         }
-        if (!*model) {
-            return tl::unexpected(gave_up(example_, problem_));
+        if (*model) {
+            return std::move(**model);
         }
-        return std::move(**model);
+        auto settled = settle_by_sat(problem_, seed_, stop_);
+        if (!settled) {
+            return tl::unexpected(std::move(settled.error()));
+        }
+        if (!*settled) {
+            return tl::unexpected(with_dead_ends(gave_up(example_, problem_)));
+        }
+        return InitialModel{std::move(**settled), true};
     }
 
     // The model, changed so that the member rules hold, or another one.
@@ -134,7 +143,9 @@ class Finder {
             return tl::unexpected(std::move(whole.error()));
         }
         if (!*whole) {
-            return tl::unexpected(violated(example_, problem_.member_rules[rule.value_or(0)]));
+            return tl::unexpected(
+                with_dead_ends(violated(example_, problem_.member_rules[rule.value_or(0)]))
+            );
         }
         return std::move(**whole);
     }
@@ -157,6 +168,11 @@ class Finder {
 
     static Error stopped() { return {ErrorCode::kCancelled, "stopped", {}}; }
 
+    [[nodiscard]] Error with_dead_ends(Error error) const {
+        error.explanation = hottest_of(problem_.size, dead_ends_);
+        return error;
+    }
+
     // Nothing when no attempt succeeded.
     Result<std::optional<InitialModel>> solve_whole(
         std::uint32_t attempts, ConstraintBoard* board
@@ -165,10 +181,11 @@ class Finder {
         if (board != nullptr) {
             board->start(model.labels);
         }
+        dead_ends_.assign(model.labels.size(), 0);
         const BlockResult result = search_.modify(
             Box::whole(problem_.size),
             std::span<Label>(model.labels),
-            {attempts, Order::kScan, board},
+            {attempts, Order::kScan, board, std::nullopt, nullptr, dead_ends_},
             {seed_, kWholeKey, 0, 0},
             stop_
         );
@@ -191,6 +208,7 @@ class Finder {
     BoxSearch& search_;
     std::uint64_t seed_;
     const std::stop_token& stop_;
+    std::vector<std::uint32_t> dead_ends_;  // by cell, of the last search of the whole
 };
 
 }  // namespace
@@ -209,8 +227,7 @@ Error contradiction_of(const Example& example, const Problem& problem, const Blo
     const std::string sides = name_sides(problem.size, cell);
     return {
         ErrorCode::kContradiction,
-        "no model of this size exists: at cell [" + std::to_string(cell.x) + ", " +
-            std::to_string(cell.y) + ", " + std::to_string(cell.z) + "]" +
+        "no model of this size exists: at cell " + name_cell(cell) +
             (sides.empty() ? "" : ", on " + sides) + ", none of " + list_names(example, own) +
             " can stand beside what the boundary and the constraints leave to its neighbours",
         {}};

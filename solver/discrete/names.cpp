@@ -2,19 +2,6 @@
 
 namespace modelsynth::discrete {
 
-namespace {
-
-std::string join_words(const std::vector<std::string>& words) {
-    std::string text;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        text += i == 0 ? "" : i + 1 == words.size() ? " and " : ", ";
-        text += words[i];
-    }
-    return text;
-}
-
-}  // namespace
-
 LabelOfName labels_by_name(const Example& example) {
     LabelOfName labels;
     for (std::size_t label = 0; label < example.pieces.size(); ++label) {
@@ -85,6 +72,20 @@ std::string list_names(const Example& example, const LabelSet& labels) {
         names.push_back(std::to_string(count - kMost) + " more");
     }
     return join_words(names);
+}
+
+std::string join_words(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        text += i == 0 ? "" : i + 1 == words.size() ? " and " : ", ";
+        text += words[i];
+    }
+    return text;
+}
+
+std::string name_cell(const Cell& cell) {
+    return "[" + std::to_string(cell.x) + ", " + std::to_string(cell.y) + ", " +
+           std::to_string(cell.z) + "]";
 }
 
 std::string name_sides(const GridSize& size, const Cell& cell) {

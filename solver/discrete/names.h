@@ -31,6 +31,12 @@ using LabelOfName = std::unordered_map<std::string, Label>;
 // "tower", "wall" and "gate": names of pieces as a person reads them, at most eight.
 [[nodiscard]] std::string list_names(const Example& example, const LabelSet& labels);
 
+// "a, b and c".
+[[nodiscard]] std::string join_words(const std::vector<std::string>& words);
+
+// "[1, 0, 3]".
+[[nodiscard]] std::string name_cell(const Cell& cell);
+
 // The outermost layer of a grid on one side.
 [[nodiscard]] Box layer(const GridSize& size, std::size_t side);
 

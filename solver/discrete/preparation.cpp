@@ -1,5 +1,6 @@
 #include "solver/discrete/preparation.h"
 
+#include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 
 #include <algorithm>
@@ -32,6 +33,12 @@ Result<std::shared_ptr<Preparation>> Preparation::make(
     std::shared_ptr<const Example> example, const Parameters& parameters, const Origin* origin
 ) {
     auto problem = make_problem(*example, parameters, origin);
+    if (!problem && problem.error().code == ErrorCode::kContradiction) {
+        const auto impossible = read_problem(*example, parameters, origin);
+        return tl::unexpected(
+            explain(std::move(problem.error()), *example, parameters, *impossible, {})
+        );
+    }
     if (!problem) {
         return tl::unexpected(std::move(problem.error()));
     }

@@ -76,8 +76,7 @@ Result<void> check_domains(const Problem& problem) {
         const bool is_kept = problem.start && problem.start->is_kept[site] != 0;
         return tl::unexpected(Error{
             ErrorCode::kContradiction,
-            "no piece can stand at cell [" + std::to_string(cell.x) + ", " +
-                std::to_string(cell.y) + ", " + std::to_string(cell.z) + "]" +
+            "no piece can stand at cell " + name_cell(cell) +
                 (sides.empty() ? "" : ", on " + sides) +
                 (is_kept ? ": the boundary and the constraints forbid what stands there in the "
                            "model that this one starts from"
@@ -88,14 +87,8 @@ Result<void> check_domains(const Problem& problem) {
     return {};
 }
 
-LabelSet only(std::size_t label_count, Label label) {
-    LabelSet set(label_count);
-    set.insert(label);
-    return set;
-}
-
 // The model to start from, in its place; what it keeps is fixed.
-void keep_origin(const Origin& origin, std::size_t label_count, Problem& problem) {
+void keep_origin(const Origin& origin, Problem& problem) {
     const GridSize& size = problem.size;
     const Box covered = {
         origin.at,
@@ -117,9 +110,9 @@ void keep_origin(const Origin& origin, std::size_t label_count, Problem& problem
         start.labels[site] = label;
         if (keeps_all_it_covers || !remade.contains(cell)) {
             start.is_kept[site] = 1;
-            problem.domains.narrow(static_cast<Site>(site), only(label_count, label));
         }
     });
+    narrow_to_kept(start, problem.domains);
     problem.start = std::move(start);
 }
 
@@ -172,7 +165,17 @@ Relations find_transitions(const Example& example) {
     return relations;
 }
 
-Result<Problem> make_problem(
+void narrow_to_kept(const Start& start, SiteDomains& domains) {
+    for (std::size_t site = 0; site < start.labels.size(); ++site) {
+        if (start.is_kept[site] != 0) {
+            LabelSet only(domains.at(static_cast<Site>(site)).label_count());
+            only.insert(start.labels[site]);
+            domains.narrow(static_cast<Site>(site), only);
+        }
+    }
+}
+
+Result<Problem> read_problem(
     const Example& example, const Parameters& parameters, const Origin* origin
 ) {
     check(find_faults(example, parameters).empty(), "a problem was made of faulty parameters");
@@ -215,9 +218,19 @@ Result<Problem> make_problem(
     }
     problem.chooser = make_chooser(example, parameters, problem);
     if (origin != nullptr) {
-        keep_origin(*origin, example.pieces.size(), problem);
+        keep_origin(*origin, problem);
     }
-    if (auto fits = check_domains(problem); !fits) {
+    return problem;
+}
+
+Result<Problem> make_problem(
+    const Example& example, const Parameters& parameters, const Origin* origin
+) {
+    auto problem = read_problem(example, parameters, origin);
+    if (!problem) {
+        return problem;
+    }
+    if (auto fits = check_domains(*problem); !fits) {
         return tl::unexpected(std::move(fits.error()));
     }
     return problem;

@@ -55,9 +55,19 @@ struct Problem {
     std::optional<Start> start;
 };
 
+// What is kept of the model that another one starts from is fixed.
+void narrow_to_kept(const Start& start, SiteDomains& domains);
+
 // Requires: find_faults() found nothing (checked); the origin, if any, lies in the model.
+// Ensures:  nothing of the domains: some cell may be able to take no piece at all.
+// Fails:    kTooLarge for too many tables of weights.
+[[nodiscard]] Result<Problem> read_problem(
+    const Example& example, const Parameters& parameters, const Origin* origin = nullptr
+);
+
+// The same, with something for every cell to take.
 // Fails:    kContradiction when some cell can take no piece at all; the message names the sides.
-//           kTooLarge for too many tables of weights.
+//           kTooLarge as read_problem().
 [[nodiscard]] Result<Problem> make_problem(
     const Example& example, const Parameters& parameters, const Origin* origin = nullptr
 );

@@ -4,9 +4,12 @@
 #include "solver/discrete/best_of.h"
 #include "solver/discrete/block_solver.h"
 #include "solver/discrete/box_labels.h"
+#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/objective.h"
 #include "solver/discrete/parallel_blocks.h"
+#include "solver/discrete/whole_by_sat.h"
 
 #include <algorithm>
 #include <memory>
@@ -76,7 +79,8 @@ class Run {
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
         solver_.begin(labels_);
-        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts);
+        std::vector<std::uint32_t> dead_ends(labels_.size());
+        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts, dead_ends);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -88,11 +92,23 @@ class Run {
             case BlockOutcome::kReverted:
                 break;
         }
-        return tl::unexpected(Error{
-            ErrorCode::kGaveUp,
-            "no model was found in " + std::to_string(kWholeAttempts) +
-                " attempts at the whole at once; blocks succeed more often",
-            {}});
+        auto settled = settle_by_sat(problem_, seed_, stop_);
+        if (!settled) {
+            return tl::unexpected(std::move(settled.error()));
+        }
+        if (!*settled) {
+            return tl::unexpected(Error{
+                ErrorCode::kGaveUp,
+                "no model was found in " + std::to_string(kWholeAttempts) +
+                    " attempts at the whole at once; blocks succeed more often",
+                {},
+                hottest_of(problem_.size, dead_ends)});
+        }
+        labels_ = std::move(**settled);
+        report(
+            whole, {BlockOutcome::kAccepted, result.attempts, SolvedBy::kSat, result.backtracks}
+        );
+        return finish(changed());
     }
 
   private:
@@ -223,6 +239,41 @@ class NoObserver final : public Observer {
     void on_block(const BlockReport& /*report*/) override {}
 };
 
+Result<Synthesis> make_best_of(
+    std::uint32_t count,
+    Preparation& preparation,
+    std::uint64_t seed,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from,
+    std::uint32_t threads
+) {
+    auto best = find_best_seed(
+        preparation.example(),
+        preparation.parameters(),
+        count,
+        seed,
+        threads,
+        [&](std::uint64_t candidate) -> Result<std::vector<Label>> {
+            NoObserver nobody;
+            auto made = make_one(preparation, candidate, nobody, stop, nullptr, 1);
+            if (!made) {
+                return tl::unexpected(std::move(made.error()));
+            }
+            return std::move(made->labels);
+        }
+    );
+    if (!best) {
+        return tl::unexpected(std::move(best.error()));
+    }
+    auto made = make_one(preparation, best->seed, observer, stop, from, threads);
+    if (made) {
+        made->stats.objective = best->value;
+        made->stats.candidates = std::move(best->candidates);
+    }
+    return made;
+}
+
 // How many models the best is to be chosen from; 0: none is asked for.
 std::uint32_t candidates_asked_for(const Parameters& parameters) {
     for (const Constraint& constraint : parameters.constraints) {
@@ -244,31 +295,17 @@ Result<Synthesis> synthesise(
     std::uint32_t threads
 ) {
     const std::uint32_t candidates = candidates_asked_for(preparation.parameters());
-    if (candidates == 0) {
-        return make_one(preparation, seed, observer, stop, from, threads);
-    }
-    auto best = find_best_seed(
-        preparation.example(),
-        preparation.parameters(),
-        candidates,
-        seed,
-        threads,
-        [&](std::uint64_t candidate) -> Result<std::vector<Label>> {
-            NoObserver nobody;
-            auto made = make_one(preparation, candidate, nobody, stop, nullptr, 1);
-            if (!made) {
-                return tl::unexpected(std::move(made.error()));
-            }
-            return std::move(made->labels);
-        }
-    );
-    if (!best) {
-        return tl::unexpected(std::move(best.error()));
-    }
-    auto made = make_one(preparation, best->seed, observer, stop, from, threads);
-    if (made) {
-        made->stats.objective = best->value;
-        made->stats.candidates = std::move(best->candidates);
+    auto made = candidates == 0
+                    ? make_one(preparation, seed, observer, stop, from, threads)
+                    : make_best_of(candidates, preparation, seed, observer, stop, from, threads);
+    if (!made && made.error().code == ErrorCode::kContradiction) {
+        return tl::unexpected(explain(
+            std::move(made.error()),
+            preparation.example(),
+            preparation.parameters(),
+            preparation.problem(),
+            stop
+        ));
     }
     return made;
 }

@@ -89,8 +89,8 @@ def test_awaiting_expressions_build_no_lambda_or_aggregate():
 
 
 @pytest.mark.parametrize("folder", [
-    "solver", "solver/core", "solver/discrete", "solver/discrete/analysis", "solver/mesh",
-    "solver/examples", "solver/registry", "proto", "server", "server/store", "server/jobs",
+    "solver", "solver/core", "solver/core/sat", "solver/discrete", "solver/discrete/analysis",
+    "solver/discrete/explanation", "solver/mesh", "solver/examples", "solver/registry", "proto", "server", "server/store", "server/jobs",
     "server/http", "server/stream", "server/ops", "clients", "clients/cli", "tests", "deploy"])
 def test_every_folder_says_what_it_is(folder):
     text = (ROOT / folder / "README.md").read_text()

@@ -1,0 +1,346 @@
+// What is said of failures, checked by trying everything on random tiny requests.
+
+#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/faults.h"
+#include "solver/discrete/synthesis.h"
+#include "tests/support/consistency_checker.h"
+#include "tests/support/examples.h"
+#include "tests/support/tiny_oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace modelsynth::discrete {
+namespace {
+
+using testing::make_example;
+using testing::make_tiny_example;
+using testing::RecordingObserver;
+using testing::TinyOracle;
+
+Result<Synthesis> make(const Example& example, const Parameters& parameters, std::uint64_t seed) {
+    RecordingObserver observer;
+    return synthesise(example, parameters, seed, observer, {});
+}
+
+class CaseMaker {
+  public:
+    explicit CaseMaker(std::uint64_t seed) : random_({seed, 0, 0, 95}) {}
+
+    Parameters parameters(const Example& example, bool with_member_rules) {
+        Parameters made;
+        made.size = below(4) == 0 ? GridSize{2, 2, 2} : GridSize{1 + below(3), 1, 1 + below(3)};
+        if (below(2) == 0) {
+            made.blocks.emplace(std::nullopt);
+        }
+        for (std::size_t side = 0; side < kDirectionCount; side += 2) {
+            for (const std::size_t one : {side, side + 1}) {
+                made.boundary[one] = boundary(example);
+            }
+            if (below(5) == 0) {
+                made.boundary[side] = SideBoundary{BoundaryKind::kPeriodic};
+                made.boundary[side + 1] = SideBoundary{BoundaryKind::kPeriodic};
+            }
+        }
+        if (below(3) == 0) {
+            made.weights = WeightList{{some(example).front(), 0.0}};
+        }
+        for (std::int32_t left = below(4); left > 0; --left) {
+            made.constraints.push_back(constraint(example, *made.size, with_member_rules));
+        }
+        return fill_defaults(made, example);
+    }
+
+  private:
+    std::int32_t below(std::int32_t bound) {
+        return static_cast<std::int32_t>(random_.below(static_cast<std::uint32_t>(bound)));
+    }
+
+    std::vector<std::string> some(const Example& example) {
+        std::vector<std::string> names;
+        const auto first =
+            static_cast<std::size_t>(below(static_cast<std::int32_t>(example.pieces.size())));
+        for (std::size_t i = 0; i < example.pieces.size(); ++i) {
+            if (i == first || below(3) == 0) {
+                names.push_back(example.pieces[i].name);
+            }
+        }
+        return names;
+    }
+
+    SideBoundary boundary(const Example& example) {
+        switch (below(6)) {
+            case 0:
+                return {BoundaryKind::kPieces, some(example)};
+            case 1:
+                return {
+                    example.size.cell_count() > 0 ? BoundaryKind::kExample : BoundaryKind::kFree};
+            default:
+                return {};
+        }
+    }
+
+    Cell cell(const GridSize& size) { return {below(size.x), below(size.y), below(size.z)}; }
+
+    Constraint constraint(const Example& example, const GridSize& size, bool with_member_rules) {
+        Constraint made = {Fixed{}, some(example)};
+        if (below(3) > 0) {
+            made.region.cells = {cell(size), cell(size)};
+        }
+        switch (below(with_member_rules ? 9 : 4)) {
+            case 0:
+                made.rule = Forbidden{};
+                break;
+            case 1:
+                made.rule = Probability{below(2) * 0.5};
+                break;
+            case 4: {
+                const auto cells = static_cast<std::int32_t>(size.cell_count());
+                const auto min = static_cast<std::uint32_t>(below(std::min(4, cells + 1)));
+                made.rule = Count{min, min + static_cast<std::uint32_t>(below(2))};
+                break;
+            }
+            case 5:
+                made.rule = Separation{2 + below(2)};
+                break;
+            case 6:
+                made.rule = MaxRun{1, {}};
+                break;
+            case 7:
+                made.rule = Connected{};
+                break;
+            case 8:
+                made.region = {};
+                made.rule = Path{cell(size), cell(size)};
+                break;
+            default:
+                break;
+        }
+        return made;
+    }
+
+    RandomStream random_;
+};
+
+// A way to take one cause out of a request.
+using Removal = void (*)(Parameters&, std::size_t number);
+
+void open_side(Parameters& parameters, std::size_t side) {
+    parameters.boundary[side] = SideBoundary{};
+}
+
+void open_axis(Parameters& parameters, std::size_t axis) {
+    open_side(parameters, 2 * axis);
+    open_side(parameters, 2 * axis + 1);
+}
+
+// The others keep their numbers.
+void drop_constraint(Parameters& parameters, std::size_t number) {
+    parameters.constraints[number].rule = Probability{1};
+}
+
+void drop_weight(Parameters& parameters, std::size_t number) {
+    auto& list = std::get<WeightList>(*parameters.weights);
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(number));
+}
+
+struct Named {
+    Removal remove;
+    std::size_t number;
+
+    friend bool operator<(const Named& a, const Named& b) {
+        return std::pair(a.remove, a.number) < std::pair(b.remove, b.number);
+    }
+};
+
+std::vector<Named> all_causes(const Parameters& parameters) {
+    std::vector<Named> all;
+    for (std::size_t side = 0; side < kDirectionCount; ++side) {
+        const BoundaryKind kind = parameters.boundary[side]->kind;
+        if (kind == BoundaryKind::kPeriodic) {
+            all.push_back({open_axis, side / 2});
+        } else if (kind != BoundaryKind::kFree) {
+            all.push_back({open_side, side});
+        }
+    }
+    for (std::size_t i = 0; i < parameters.constraints.size(); ++i) {
+        all.push_back({drop_constraint, i});
+    }
+    if (const auto* list = std::get_if<WeightList>(&*parameters.weights)) {
+        for (std::size_t i = 0; i < list->size(); ++i) {
+            all.push_back({drop_weight, i});
+        }
+    }
+    return all;
+}
+
+std::vector<Named> causes_of(const Parameters& parameters, const Conflict& conflict) {
+    std::vector<Named> causes;
+    for (const std::string& name : conflict.sides) {
+        const auto side = std::find(kSideNames.begin(), kSideNames.end(), name);
+        causes.push_back({open_side, static_cast<std::size_t>(side - kSideNames.begin())});
+    }
+    for (const auto& constraint : conflict.constraints) {
+        EXPECT_EQ(
+            constraint.kind, kRuleNames.at(parameters.constraints[constraint.index].rule.index())
+        );
+        causes.push_back({drop_constraint, constraint.index});
+    }
+    for (const std::string& axis : conflict.periodic) {
+        causes.push_back({open_axis, std::string("xyz").find(axis)});
+    }
+    for (const std::string& name : conflict.removed) {
+        const auto& list = std::get<WeightList>(*parameters.weights);
+        const auto entry = std::find_if(list.begin(), list.end(), [&name](const auto& one) {
+            return one.first == name && one.second == 0;
+        });
+        EXPECT_NE(entry, list.end());
+        causes.push_back({drop_weight, static_cast<std::size_t>(entry - list.begin())});
+    }
+    return causes;
+}
+
+Parameters without(Parameters parameters, const std::set<Named>& unwanted) {
+    for (auto cause = unwanted.rbegin(); cause != unwanted.rend(); ++cause) {
+        cause->remove(parameters, cause->number);
+    }
+    return parameters;
+}
+
+std::set<std::string> names_of(const Example& example, const std::set<Label>& labels) {
+    std::set<std::string> names;
+    for (const Label label : labels) {
+        names.insert(example.pieces[label].name);
+    }
+    return names;
+}
+
+// What is wrong with a conflict, or nothing.
+std::optional<std::string> find_fault(
+    const Example& example, const Parameters& parameters, const Conflict& conflict
+) {
+    const std::vector<Named> causes = causes_of(parameters, conflict);
+    std::set<Named> others;
+    for (const Named& cause : all_causes(parameters)) {
+        others.insert(cause);
+    }
+    for (const Named& cause : causes) {
+        others.erase(cause);
+    }
+    const Parameters alone = without(parameters, others);
+    if (TinyOracle(example, alone).has_model()) {
+        return "the causes can hold together";
+    }
+    for (const Named& cause : causes) {
+        std::set<Named> more = others;
+        more.insert(cause);
+        const Parameters less = without(parameters, more);
+        if (conflict.is_minimal && !TinyOracle(example, less).has_model()) {
+            return "a cause can be left out";
+        }
+    }
+    TinyOracle oracle(example, alone);
+    std::map<std::size_t, std::set<Label>> held;
+    for (const auto& [cell, labels] : conflict.cells) {
+        held[parameters.size->index(cell)] = oracle.domain(cell);
+        if (names_of(example, oracle.domain(cell)) !=
+            std::set<std::string>(labels.begin(), labels.end())) {
+            return "the causes leave other labels";
+        }
+    }
+    oracle.open_all();
+    for (const auto& [site, labels] : held) {
+        oracle.set_domain(parameters.size->cell(site), labels);
+    }
+    if (oracle.has_model()) {
+        return "it does not show at these cells";
+    }
+    return std::nullopt;
+}
+
+struct Tally {
+    std::size_t possible = 0;
+    std::size_t conflicts = 0;
+    std::size_t minimal = 0;
+    std::size_t with_cells = 0;
+    std::size_t gave_up = 0;
+    std::map<std::string, std::size_t> kinds;
+};
+
+void check_case(std::uint64_t seed, bool with_member_rules, Tally& tally) {
+    const Example example = make_tiny_example(seed, seed % 3 != 0);
+    const Parameters parameters = CaseMaker(seed).parameters(example, with_member_rules);
+    ASSERT_TRUE(find_faults(example, parameters).empty()) << seed;
+    const auto made = make(example, parameters, seed);
+    const bool can_be = TinyOracle(example, parameters).has_model();
+    if (made) {
+        ASSERT_TRUE(can_be) << seed;
+        ++tally.possible;
+        return;
+    }
+    if (made.error().code == ErrorCode::kGaveUp) {
+        ++tally.gave_up;
+        return;
+    }
+    ASSERT_EQ(made.error().code, ErrorCode::kContradiction) << seed;
+    ASSERT_FALSE(can_be) << seed;
+    const auto* conflict = std::any_cast<Conflict>(&made.error().explanation);
+    ASSERT_NE(conflict, nullptr) << seed << ": " << made.error().message;
+    const auto fault = find_fault(example, parameters, *conflict);
+    ASSERT_FALSE(fault) << seed << ": " << *fault << ": " << made.error().message;
+    // Where a cell has nothing left that is told, though fewer causes may be in conflict.
+    ASSERT_TRUE(
+        with_member_rules || conflict->is_minimal ||
+        (conflict->cells.size() == 1 && conflict->cells[0].labels.empty() &&
+         made.error().message.find("there is none either") != std::string::npos)
+    ) << seed
+      << ": " << made.error().message;
+    ++tally.conflicts;
+    tally.minimal += conflict->is_minimal ? 1U : 0U;
+    tally.with_cells += conflict->cells.empty() ? 0U : 1U;
+    tally.kinds["side"] += conflict->sides.size();
+    tally.kinds["periodic"] += conflict->periodic.size();
+    tally.kinds["removed"] += conflict->removed.size();
+    for (const auto& constraint : conflict->constraints) {
+        ++tally.kinds[constraint.kind];
+    }
+}
+
+TEST(Explanation, OfCellsByThemselvesIsCompleteAndMinimal) {
+    Tally tally;
+    for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+        ASSERT_NO_FATAL_FAILURE(check_case(seed, false, tally));
+    }
+    EXPECT_EQ(tally.gave_up, std::size_t{0});
+    EXPECT_GT(tally.minimal, tally.conflicts / 2);
+    EXPECT_GT(tally.possible, std::size_t{300});
+    EXPECT_GT(tally.conflicts, std::size_t{300});
+    EXPECT_GT(tally.with_cells, std::size_t{200});
+    for (const char* kind : {"side", "periodic", "removed", "fixed", "forbidden", "probability"}) {
+        EXPECT_GT(tally.kinds[kind], std::size_t{10}) << kind;
+    }
+}
+
+TEST(Explanation, OfMemberRulesNamesThem) {
+    Tally tally;
+    for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+        ASSERT_NO_FATAL_FAILURE(check_case(seed, true, tally));
+    }
+    EXPECT_GT(tally.possible, std::size_t{300});
+    EXPECT_GT(tally.conflicts, std::size_t{300});
+    EXPECT_GT(tally.minimal, tally.conflicts * 3 / 4);
+    EXPECT_LT(tally.gave_up, std::size_t{100});
+    for (const char* kind : {"count", "separation", "max_run", "connected", "path"}) {
+        EXPECT_GT(tally.kinds[kind], std::size_t{1}) << kind;
+    }
+}
+
+}  // namespace
+}  // namespace modelsynth::discrete
