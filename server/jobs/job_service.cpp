@@ -1,8 +1,8 @@
 #include "server/jobs/job_service.h"
 
 #include "proto/frame.h"
-#include "proto/job_request.h"
 #include "server/jobs/ids.h"
+#include "server/jobs/job_inputs.h"
 #include "server/jobs/store_problem.h"
 
 #include <algorithm>
@@ -132,6 +132,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     if (draining_) {
         return tl::unexpected(make_problem("draining", "the server is stopping"));
     }
+    Inputs inputs;
     auto request = proto::parse_job_request(
         body,
         config_.limits,
@@ -139,11 +140,16 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
             auto entry = examples_.find(id);
             return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
+        [this, &inputs](const std::string& id) { return find_origin(id, inputs); },
         make_seed()
     );
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }
+    std::erase_if(inputs.links, [&request](const ArtifactLink& link) {
+        return link.name == kExampleArtifact &&
+               ExampleLibrary::id_of(link.digest) != request->example_id;
+    });
     NewJob job;
     job.created = proto::now_millis();
     job.id = make_job_id(job.created);
@@ -155,6 +161,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     job.idempotency_key = idempotency_key;
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
+    job.artifacts = std::move(inputs.links);
     auto submitted = parsed(jobs_.submit(job, config_.queue_max));
     if (submitted && !submitted->replayed) {
         const std::lock_guard lock(mutex_);
@@ -215,6 +222,29 @@ Parsed<Job> JobService::find_finished(const std::string& id) {
     return job;
 }
 
+Parsed<proto::JobRequest> JobService::find_origin(const std::string& id, Inputs& inputs) {
+    const auto job = find_finished(id);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    const auto hold = [&](const char* artifact, const char* name) {
+        return jobs_.artifact(id, artifact).and_then([&](const std::string& digest) {
+            return artifacts_.pin(digest).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
+                inputs.links.push_back({name, digest});
+                inputs.pins.push_back(std::move(pin));
+            });
+        });
+    };
+    if (const auto held = hold("labels", kOriginArtifact); !held) {
+        return tl::unexpected(problem_of(held.error()));
+    }
+    const auto held = hold(kExampleArtifact, kExampleArtifact);
+    if (!held && held.error().code != StoreErrorCode::kNotFound) {
+        return tl::unexpected(problem_of(held.error()));
+    }
+    return read_request(*job);
+}
+
 Stored<std::string> JobService::load_labels(const std::string& id) {
     const auto digest = jobs_.artifact(id, "labels");
     if (digest) {
@@ -232,21 +262,23 @@ Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
     return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
 }
 
-Parsed<JobService::LoadedModel> JobService::load_model(
-    const Job& job, const std::string& encoded_labels
-) {
-    auto request = proto::parse_job_request(
+Parsed<proto::JobRequest> JobService::read_request(const Job& job) {
+    return proto::parse_job_request(
         job.request,
         config_.limits,
         [this, &job](const std::string& id) -> std::optional<Example> {
-            if (auto entry = examples_.find(id)) {
-                return std::move(entry->example);
-            }
-            const auto kept = jobs_.artifact(job.id, kExampleArtifact);
-            return kept ? examples_.load(*kept) : std::nullopt;
+            auto entry = find_example(jobs_, examples_, job.id, id);
+            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
+        nullptr,
         job.seed
     );
+}
+
+Parsed<JobService::LoadedModel> JobService::load_model(
+    const Job& job, const std::string& encoded_labels
+) {
+    auto request = read_request(job);
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "proto/job.h"
+#include "proto/job_request.h"
 #include "proto/limits.h"
 #include "proto/problem.h"
 #include "server/jobs/example_analyses.h"
@@ -113,10 +114,24 @@ class JobService {
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(
         const proto::Job& job, const std::string& encoded_labels
     );
+    // The request as it was accepted; its example is found even when it was deleted since.
+    [[nodiscard]] proto::Parsed<proto::JobRequest> read_request(const proto::Job& job);
     [[nodiscard]] Stored<std::string> load_labels(const std::string& id);
     // Fails: not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
+
+    // What a new job needs of the one that it starts from, held until it is linked to it.
+    struct Inputs {
+        std::vector<ArtifactLink> links;
+        std::vector<std::unique_ptr<ArtifactStore::Pin>> pins;
+    };
+
+    // The request of a job to start from; what the new one needs of it goes to `inputs`.
+    // Fails: as find_finished().
+    [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
+        const std::string& id, Inputs& inputs
+    );
 
     JobServiceConfig config_;
     JobStore& jobs_;

@@ -109,13 +109,13 @@ TEST(Fuzz, JobRequests) {
         R"("priority":1,"deadline":2.5,"tags":{"a":"b"}})";
     const auto none = [](const std::string&) { return std::optional<Example>(); };
     fuzz(request, 1, [&none](const std::string& text) {
-        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        const auto parsed = proto::parse_job_request(text, {}, none, nullptr, 1);
         if (!parsed) {
             EXPECT_FALSE(proto::to_json(parsed.error()).empty());
             return false;
         }
         // What is accepted is echoed in a form that is accepted again and says the same.
-        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
         EXPECT_TRUE(again && again->echo == parsed->echo) << text;
         return true;
     });
@@ -152,12 +152,12 @@ TEST(Fuzz, Constraints) {
     constexpr std::size_t kMadeCellsMax = 1000;
     std::size_t made = 0;
     fuzz(request, 8, [&](const std::string& text) {
-        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        const auto parsed = proto::parse_job_request(text, {}, none, nullptr, 1);
         if (!parsed) {
             EXPECT_FALSE(proto::to_json(parsed.error()).empty());
             return false;
         }
-        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
         EXPECT_TRUE(again && again->echo == parsed->echo) << text;
         if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
             Preparations preparations;
