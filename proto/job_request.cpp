@@ -180,6 +180,7 @@ class RequestReader {
         }
         if (example_ && earlier_ && label_names(*example_) != label_names(earlier_->task.example)) {
             value.fault("must have the pieces of that job's example, in the same order");
+            example_ = earlier_->task.example;  // what else is wrong is told by the right one
         }
         faults_.add_all("", faults.take());
     }

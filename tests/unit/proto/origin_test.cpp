@@ -203,6 +203,20 @@ TEST_F(Origin, AnotherExampleNeedsTheSamePieces) {
     EXPECT_EQ(pointers_of(R"({"from": {"job": "a"}, "example": "city"})"), Pointers{"/example"});
 }
 
+TEST_F(Origin, AnExampleThatDoesNotFitMakesNoFaultsOfWhatTheJobAskedFor) {
+    finish(
+        "a",
+        std::string(R"({"solver": "discrete", "parameters": {"boundary": {"top": "wall"}},
+        "example": )") +
+            kLine + "}"
+    );
+    EXPECT_EQ(
+        pointers_of(R"({"from": {"job": "a"}, "example": "city", "parameters":
+            {"weights": {"air": 2}}})"),
+        (Pointers{"/example", "/parameters/weights/air"})
+    );
+}
+
 TEST_F(Origin, AnotherSizeGetsItsOwnBlocksUnlessTheyWereChosen) {
     const auto blocks_at = [this](const std::string& before, const std::string& now) {
         finish(
