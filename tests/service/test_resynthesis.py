@@ -22,6 +22,9 @@ SIZE = [12, 4, 11]
 BOX = {"min": [3, 0, 2], "max": [9, 4, 8]}
 HILLS_REQUEST = {"solver": "discrete", "example": HILLS, "seed": 5, "parameters": {"size": SIZE}}
 UNIFORM = {"weights": "uniform"}
+# All of its pieces have neighbours on all sides, so that what stands at a border can grow.
+YARD_REQUEST = {"solver": "discrete", "example": YARD, "seed": 5,
+                "parameters": {"size": SIZE, **UNIFORM}}
 
 
 def post(server, request, **headers):
@@ -72,6 +75,11 @@ def places_of(box):
 def hills(server):
     """A finished job and its labels."""
     return make(server, HILLS_REQUEST)
+
+
+@pytest.fixture(scope="module")
+def yard(server):
+    return make(server, YARD_REQUEST)
 
 
 # --- the guide
@@ -168,14 +176,14 @@ def test_a_constraint_of_the_new_job_alone_holds_where_things_are_made_anew(serv
 # --- growing
 
 @pytest.mark.parametrize("at", [(0, 0, 0), (5, 0, 0), (2, 0, 3), (5, 0, 6)])
-def test_a_model_that_grows_stays_in_its_place(server, hills, at):
-    earlier, before = hills
+def test_a_model_that_grows_stays_in_its_place(server, yard, at):
+    earlier, before = yard
     beyond = set()
     for seed in range(4):
-        job, after = make(server, from_job(earlier, seed, {**UNIFORM, "size": [17, 4, 17]}, at=at))
+        job, after = make(server, from_job(earlier, seed, {"size": [17, 4, 17]}, at=at))
         assert after["size"] == [17, 4, 17]
         assert differing(before, after, at) == set()
-        assert_fits(after, HILLS, job["request"]["parameters"]["boundary"])
+        assert_fits(after, YARD, job["request"]["parameters"]["boundary"])
         assert job["request"]["from"]["at"] == list(at)
         high = [a + s for a, s in zip(at, SIZE)]
         beyond |= {label for place, label in by_place(after).items()
@@ -183,20 +191,20 @@ def test_a_model_that_grows_stays_in_its_place(server, hills, at):
     assert len(beyond) >= 4, "what lies beyond the older model is all the same"
 
 
-def test_a_model_that_grows_may_be_made_anew_in_part(server, hills):
-    earlier, before = hills
+def test_a_model_that_grows_may_be_made_anew_in_part(server, yard):
+    earlier, before = yard
     box = {"min": [3, 0, 4], "max": [9, 4, 10]}
     changed = set()
     for seed in range(4):
-        _, after = make(server, from_job(earlier, seed, {**UNIFORM, "size": [17, 4, 17]},
+        _, after = make(server, from_job(earlier, seed, {"size": [17, 4, 17]},
                                          at=[2, 0, 3], box=box))
         changed |= differing(before, after, (2, 0, 3))
     assert changed and changed <= places_of(box)
 
 
-def test_a_model_that_grows_gets_the_usual_blocks_of_its_size(server, hills):
-    job, _ = make(server, from_job(hills[0], parameters={"size": [12, 6, 11]}))
-    assert hills[0]["request"]["parameters"]["blocks"]["size"] == [10, 4, 10]
+def test_a_model_that_grows_gets_the_usual_blocks_of_its_size(server, yard):
+    job, _ = make(server, from_job(yard[0], parameters={"size": [12, 6, 11]}))
+    assert yard[0]["request"]["parameters"]["blocks"]["size"] == [10, 4, 10]
     assert job["request"]["parameters"]["blocks"]["size"] == [10, 6, 10]
 
 
@@ -310,16 +318,16 @@ def test_an_uploaded_example_that_was_deleted_stays_with_its_jobs(make_server):
 # --- the earlier job goes
 
 def test_a_model_has_a_successor_that_has_one(server):
-    first, before = make(server, HILLS_REQUEST)
+    first, before = make(server, YARD_REQUEST)
     left, right = ({"min": [low, 0, 0], "max": [low + 4, 4, 11]} for low in (1, 7))
-    second, between = make(server, from_job(first, 1, UNIFORM, box=left))
-    third, after = make(server, from_job(second, 2, UNIFORM, box=right))
+    second, between = make(server, from_job(first, 1, box=left))
+    third, after = make(server, from_job(second, 2, box=right))
     assert differing(before, between) <= places_of(left)
     assert differing(between, after) <= places_of(right)
     assert third["request"]["from"]["job"] == second["id"]
     for job in (first, second):
         server.request("DELETE", f"/v1/jobs/{job['id']}")
-    fourth, last = make(server, from_job(third, 3, {**UNIFORM, "size": [14, 4, 11]}))
+    fourth, last = make(server, from_job(third, 3, {"size": [14, 4, 11]}))
     assert differing(after, last) == set()
     assert fourth["request"]["from"]["size"] == SIZE
 
@@ -339,6 +347,26 @@ def test_the_earlier_job_may_be_deleted_while_the_new_one_waits(make_server):
     assert job["state"] == "succeeded", job["error"]
     assert job["result"]["sha256"] == expected["result"]["sha256"]
     assert differing(before, labels_of(server, job)) <= places_of(BOX)
+
+
+def test_a_job_that_goes_while_another_is_made_from_it_was_there_or_was_not(make_server):
+    server = make_server()
+    statuses = set()
+    for round_ in range(20):
+        earlier, before = make(server, {**HILLS_REQUEST, "seed": round_})
+        request = from_job(earlier, box=BOX)
+        answer, gone = together(2, lambda number, request=request, job=earlier: (
+            post(server, request) if number == 0
+            else server.request("DELETE", f"/v1/jobs/{job['id']}")))
+        assert gone.status == 204
+        statuses.add(answer.status)
+        if answer.status == 202:
+            job = server.wait(answer.json()["id"])
+            assert job["state"] == "succeeded", job["error"]
+            assert differing(before, labels_of(server, job)) <= places_of(BOX)
+        else:
+            assert_faults(answer, request, ["/from/job"])
+    assert 202 in statuses
 
 
 def test_what_a_job_started_from_goes_with_it(make_server):
