@@ -62,14 +62,16 @@ OrderedJson write_origin(const JobOrigin& from) {
 }
 
 bool lies_within(const discrete::Origin& origin, const GridSize& model) {
-    const auto& [size, labels, at, remade] = origin;
+    const Cell at = origin.at;
+    const GridSize size = origin.size;
     return at.x + size.x <= model.x && at.y + size.y <= model.y && at.z + size.z <= model.z;
 }
 
 std::vector<Fault> find_origin_faults(const JobOrigin& from, const GridSize& model) {
     std::vector<Fault> faults;
     const discrete::Origin& origin = from.origin;
-    if (!lies_within({origin.size, {}}, model)) {
+    const discrete::Origin in_the_corner = {origin.size, {}};
+    if (!lies_within(in_the_corner, model)) {
         faults.push_back(
             {"/parameters/size",
              "the model to start from is larger: " + dump(write_size(origin.size)) + " cells"}

@@ -315,6 +315,19 @@ def test_an_uploaded_example_that_was_deleted_stays_with_its_jobs(make_server):
     assert_faults(post(server, job_request(example=example)), job_request(), ["/example"])
 
 
+def test_an_uploaded_example_of_the_new_jobs_own_stays_with_it(make_server):
+    server = make_server()
+    flat, high = (server.request("POST", "/v1/examples", {**HILLS, "cell": [1, height, 1]})
+                  .json()["id"] for height in (1, 3))
+    earlier, _ = make(server, {**HILLS_REQUEST, "example": flat})
+    jobs = [make(server, {**from_job(earlier, box=BOX), "example": high})[0] for _ in range(2)]
+    files = [f"/v1/jobs/{job['id']}/model.glb?profile=merged" for job in jobs]
+    expected = server.get(files[0]).body
+    for example in (flat, high):
+        assert server.request("DELETE", f"/v1/examples/{example}").status == 204
+    assert server.get(files[1]).status == 200 and server.get(files[1]).body == expected
+
+
 # --- the earlier job goes
 
 def test_a_model_has_a_successor_that_has_one(server):
