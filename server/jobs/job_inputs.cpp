@@ -7,6 +7,33 @@
 
 namespace modelsynth::server {
 
+Stored<void> InheritedInputs::take(
+    JobStore& jobs, ArtifactStore& artifacts, const std::string& earlier_id
+) {
+    const auto hold = [&](const char* artifact, const char* name) {
+        return jobs.artifact(earlier_id, artifact).and_then([&](const std::string& digest) {
+            return artifacts.pin(digest).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
+                links_.push_back({name, digest});
+                pins_.push_back(std::move(pin));
+            });
+        });
+    };
+    if (auto held = hold("labels", kOriginArtifact); !held) {
+        return held;
+    }
+    auto held = hold(kExampleArtifact, kExampleArtifact);
+    const bool has_none = !held && held.error().code == StoreErrorCode::kNotFound;
+    return has_none ? Stored<void>() : held;
+}
+
+std::vector<ArtifactLink> InheritedInputs::links(const std::string& example_id) const {
+    std::vector<ArtifactLink> links = links_;
+    std::erase_if(links, [&example_id](const ArtifactLink& link) {
+        return link.name == kExampleArtifact && ExampleLibrary::id_of(link.digest) != example_id;
+    });
+    return links;
+}
+
 std::optional<ExampleLibrary::Entry> find_example(
     JobStore& jobs, ExampleLibrary& examples, const std::string& job_id, const std::string& id
 ) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace modelsynth::server {
 
@@ -18,6 +19,22 @@ namespace modelsynth::server {
 inline constexpr const char* kExampleArtifact = "example";
 // The labels of the model that the job starts from.
 inline constexpr const char* kOriginArtifact = "origin";
+
+// What a new job takes over from the one that it starts from, held until it is linked to it.
+class InheritedInputs {
+  public:
+    // Fails: kNotFound when there is no such job or it has no model.
+    [[nodiscard]] Stored<void> take(
+        JobStore& jobs, ArtifactStore& artifacts, const std::string& earlier_id
+    );
+
+    // The links of a job with that example; an earlier job's other example is none of its.
+    [[nodiscard]] std::vector<ArtifactLink> links(const std::string& example_id) const;
+
+  private:
+    std::vector<ArtifactLink> links_;
+    std::vector<std::unique_ptr<ArtifactStore::Pin>> pins_;
+};
 
 // The example of an id that the job's request names, also when it was deleted since and the job
 // keeps it.

@@ -2,7 +2,6 @@
 
 #include "proto/frame.h"
 #include "server/jobs/ids.h"
-#include "server/jobs/job_inputs.h"
 #include "server/jobs/store_problem.h"
 
 #include <algorithm>
@@ -132,7 +131,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     if (draining_) {
         return tl::unexpected(make_problem("draining", "the server is stopping"));
     }
-    Inputs inputs;
+    InheritedInputs inputs;
     auto request = proto::parse_job_request(
         body,
         config_.limits,
@@ -146,10 +145,6 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }
-    std::erase_if(inputs.links, [&request](const ArtifactLink& link) {
-        return link.name == kExampleArtifact &&
-               ExampleLibrary::id_of(link.digest) != request->example_id;
-    });
     NewJob job;
     job.created = proto::now_millis();
     job.id = make_job_id(job.created);
@@ -161,7 +156,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     job.idempotency_key = idempotency_key;
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
-    job.artifacts = std::move(inputs.links);
+    job.artifacts = inputs.links(job.example_id);
     auto submitted = parsed(jobs_.submit(job, config_.queue_max));
     if (submitted && !submitted->replayed) {
         const std::lock_guard lock(mutex_);
@@ -222,27 +217,13 @@ Parsed<Job> JobService::find_finished(const std::string& id) {
     return job;
 }
 
-Parsed<proto::JobRequest> JobService::find_origin(const std::string& id, Inputs& inputs) {
+Parsed<proto::JobRequest> JobService::find_origin(const std::string& id, InheritedInputs& inputs) {
     const auto job = find_finished(id);
     if (!job) {
         return tl::unexpected(job.error());
     }
-    const auto hold = [&](const char* artifact, const char* name) {
-        return jobs_.artifact(id, artifact).and_then([&](const std::string& digest) {
-            return artifacts_.pin(digest).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
-                inputs.links.push_back({name, digest});
-                inputs.pins.push_back(std::move(pin));
-            });
-        });
-    };
-    if (const auto held = hold("labels", kOriginArtifact); !held) {
-        return tl::unexpected(problem_of(held.error()));
-    }
-    const auto held = hold(kExampleArtifact, kExampleArtifact);
-    if (!held && held.error().code != StoreErrorCode::kNotFound) {
-        return tl::unexpected(problem_of(held.error()));
-    }
-    return read_request(*job);
+    const auto taken = inputs.take(jobs_, artifacts_, id);
+    return taken ? read_request(*job) : tl::unexpected(problem_of(taken.error()));
 }
 
 Stored<std::string> JobService::load_labels(const std::string& id) {

@@ -6,6 +6,7 @@
 #include "proto/problem.h"
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
+#include "server/jobs/job_inputs.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
 #include "server/jobs/worker.h"
@@ -120,17 +121,10 @@ class JobService {
     // Fails: not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
-
-    // What a new job needs of the one that it starts from, held until it is linked to it.
-    struct Inputs {
-        std::vector<ArtifactLink> links;
-        std::vector<std::unique_ptr<ArtifactStore::Pin>> pins;
-    };
-
     // The request of a job to start from; what the new one needs of it goes to `inputs`.
     // Fails: as find_finished().
     [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
-        const std::string& id, Inputs& inputs
+        const std::string& id, InheritedInputs& inputs
     );
 
     JobServiceConfig config_;
