@@ -15,6 +15,7 @@ using discrete::Constraint;
 using discrete::Rule;
 
 constexpr double kWeightMax = 1e6;
+constexpr std::size_t kProfileMax = 4096;
 constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
 
 std::uint32_t read_count(const Value& value, const RequestLimits& limits, std::uint32_t least) {
@@ -61,10 +62,148 @@ Rule read_path(ObjectReader& reader, const RequestLimits& limits) {
     return path;
 }
 
+std::vector<std::pair<std::string, std::string>> read_mirror(
+    const Value& value, const RequestLimits& limits
+) {
+    std::vector<std::pair<std::string, std::string>> mirror;
+    if (!value.json().is_object()) {
+        value.fault("must be an object that names each piece's image");
+        return mirror;
+    }
+    for (const auto& [name, json] : value.json().items()) {
+        const Value image(json, value.pointer() + "/" + pointer_part(name), value.faults());
+        if (name.size() > limits.name_characters_max) {
+            image.fault("the name is too long");
+        } else if (auto text = image.string(limits.name_characters_max)) {
+            mirror.emplace_back(name, std::move(*text));
+        }
+    }
+    return mirror;
+}
+
+Rule read_symmetry(ObjectReader& reader, const Value& whole, const RequestLimits& limits) {
+    using Kind = discrete::Symmetry::Kind;
+    discrete::Symmetry symmetry;
+    int kinds = 0;
+    if (const auto reflect = reader.optional("reflect")) {
+        ++kinds;
+        const auto axis = reflect->one_of({"x", "z"});
+        symmetry.kind = axis == 1U ? Kind::kReflectZ : Kind::kReflectX;
+    }
+    if (const auto translate = reader.optional("translate")) {
+        ++kinds;
+        symmetry.kind = Kind::kTranslate;
+        symmetry.translation =
+            translate->cell(-limits.extent_max, limits.extent_max).value_or(Cell{1, 0, 0});
+    }
+    if (const auto rotate = reader.optional("rotate")) {
+        ++kinds;
+        const auto turns = rotate->integer(2, 4);
+        if (turns == 3) {
+            rotate->fault("must be 2, by half turns, or 4, by quarter turns");
+        }
+        symmetry.kind = turns == 4 ? Kind::kQuarterTurn : Kind::kHalfTurn;
+    }
+    if (kinds != 1) {
+        whole.fault("symmetry needs one of \"reflect\", \"translate\" and \"rotate\"");
+    }
+    if (const auto mirror = reader.optional("mirror")) {
+        symmetry.mirror = read_mirror(*mirror, limits);
+    }
+    return symmetry;
+}
+
+Rule read_resemblance(ObjectReader& reader, const RequestLimits& limits) {
+    discrete::Resemblance resemblance;
+    if (const auto window = reader.optional("window")) {
+        resemblance.window =
+            static_cast<std::int32_t>(window->integer(1, limits.resemblance_window_max).value_or(1)
+            );
+    }
+    if (const auto threshold = reader.optional("threshold")) {
+        constexpr std::int64_t kThresholdMax = 10'000;
+        resemblance.threshold =
+            static_cast<std::int32_t>(threshold->integer(0, kThresholdMax).value_or(0));
+    }
+    return resemblance;
+}
+
+discrete::Term read_term(const Value& value, const RequestLimits& limits) {
+    using Kind = discrete::Term::Kind;
+    discrete::Term term;
+    ObjectReader reader(value);
+    const auto kind_value = reader.required("term");
+    const auto kind = kind_value ? kind_value->one_of(discrete::kTermNames) : std::nullopt;
+    term.kind = static_cast<Kind>(kind.value_or(0));
+    if (const auto weight = reader.optional("weight")) {
+        term.weight = weight->number(-kWeightMax, kWeightMax).value_or(1);
+    }
+    if (const auto pieces = reader.optional("pieces")) {
+        term.pieces =
+            pieces->strings(1, limits.pieces_max, limits.name_characters_max).value_or(term.pieces);
+    }
+    if (kind && (term.kind == Kind::kDensity || term.kind == Kind::kCount)) {
+        if (const auto target = reader.optional("target")) {
+            const double most =
+                term.kind == Kind::kDensity ? 1 : static_cast<double>(limits.model_cells_max);
+            term.target = target->number(0, most);
+        }
+    }
+    if (kind && term.kind == Kind::kHeightProfile) {
+        const auto profile = reader.required("profile");
+        const auto shares = profile ? profile->array(1, kProfileMax) : std::nullopt;
+        for (std::size_t i = 0; shares && i < shares->size(); ++i) {
+            term.profile.push_back((*shares)[i].number(0, 1).value_or(0));
+        }
+    }
+    if (kind || !kind_value) {
+        reader.finish();  // of an unknown kind no field can be called unknown
+    }
+    return term;
+}
+
+std::vector<discrete::Term> read_terms(ObjectReader& reader, const RequestLimits& limits) {
+    std::vector<discrete::Term> terms;
+    const auto value = reader.required("terms");
+    const auto values = value ? value->array(1, limits.terms_max) : std::nullopt;
+    for (std::size_t i = 0; values && i < values->size(); ++i) {
+        terms.push_back(read_term((*values)[i], limits));
+    }
+    return terms;
+}
+
+Rule read_objective(ObjectReader& reader, const RequestLimits& limits) {
+    discrete::Objective objective = {read_terms(reader, limits)};
+    if (const auto temperature = reader.optional("temperature")) {
+        objective.temperature = temperature->number(0, kWeightMax).value_or(0);
+    }
+    return objective;
+}
+
+Rule read_best_of(ObjectReader& reader, const RequestLimits& limits) {
+    discrete::BestOf best = {read_terms(reader, limits)};
+    if (const auto n = reader.required("n")) {
+        best.n = static_cast<std::uint32_t>(n->integer(1, limits.best_of_max).value_or(1));
+    }
+    return best;
+}
+
 // The further fields of the kind.
 Rule read_rule(
     const std::string& kind, ObjectReader& reader, const Value& whole, const RequestLimits& limits
 ) {
+    if (kind == "symmetry") {
+        return read_symmetry(reader, whole, limits);
+    }
+    if (kind == "resemblance") {
+        return read_resemblance(reader, limits);
+    }
+    if (kind == "objective") {
+        return read_objective(reader, limits);
+    }
+    if (kind == "best_of") {
+        return read_best_of(reader, limits);
+    }
     if (kind == "forbidden") {
         return discrete::Forbidden{};
     }
@@ -104,15 +243,39 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
     if (kind) {
         constraint.rule = read_rule(discrete::kRuleNames.at(*kind), reader, value, limits);
     }
-    if (const auto pieces = reader.required("pieces")) {
-        constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_characters_max)
-                                .value_or(constraint.pieces);
+    if (!kind || discrete::names_pieces(constraint.rule)) {
+        if (const auto pieces = reader.required("pieces")) {
+            constraint.pieces = pieces->strings(1, limits.pieces_max, limits.name_characters_max)
+                                    .value_or(constraint.pieces);
+        }
     }
-    constraint.region = read_region(reader, limits);
+    if (!kind || discrete::has_region(constraint.rule)) {
+        constraint.region = read_region(reader, limits);
+    }
     if (kind || !kind_value) {
         reader.finish();  // of an unknown kind no field can be called unknown
     }
     return constraint;
+}
+
+OrderedJson write_terms(const std::vector<discrete::Term>& terms) {
+    OrderedJson list = OrderedJson::array();
+    for (const discrete::Term& term : terms) {
+        OrderedJson written = {
+            {"term", discrete::kTermNames.at(static_cast<std::size_t>(term.kind))},
+            {"weight", term.weight}};
+        if (!term.pieces.empty()) {
+            written["pieces"] = term.pieces;
+        }
+        if (term.target) {
+            written["target"] = *term.target;
+        }
+        if (!term.profile.empty()) {
+            written["profile"] = term.profile;
+        }
+        list.push_back(std::move(written));
+    }
+    return list;
 }
 
 // Writes the further fields of a rule.
@@ -149,6 +312,46 @@ struct RuleWriter {
         written["from"] = write_cell(rule.from);
         written["to"] = write_cell(rule.to);
     }
+
+    void operator()(const discrete::Symmetry& rule) const {
+        using Kind = discrete::Symmetry::Kind;
+        switch (rule.kind) {
+            case Kind::kReflectX:
+                written["reflect"] = "x";
+                break;
+            case Kind::kReflectZ:
+                written["reflect"] = "z";
+                break;
+            case Kind::kHalfTurn:
+                written["rotate"] = 2;
+                break;
+            case Kind::kQuarterTurn:
+                written["rotate"] = 4;
+                break;
+            case Kind::kTranslate:
+                written["translate"] = write_cell(rule.translation);
+                break;
+        }
+        written["mirror"] = OrderedJson::object();
+        for (const auto& [piece, image] : rule.mirror) {
+            written["mirror"][piece] = image;
+        }
+    }
+
+    void operator()(const discrete::Resemblance& rule) const {
+        written["window"] = rule.window;
+        written["threshold"] = rule.threshold;
+    }
+
+    void operator()(const discrete::Objective& rule) const {
+        written["terms"] = write_terms(rule.terms);
+        written["temperature"] = rule.temperature;
+    }
+
+    void operator()(const discrete::BestOf& rule) const {
+        written["terms"] = write_terms(rule.terms);
+        written["n"] = rule.n;
+    }
 };
 
 }  // namespace
@@ -177,7 +380,7 @@ std::vector<Constraint> read_constraints(const Value& value, const RequestLimits
         if (is_member_rule(constraint.rule) && ++member_rules == limits.member_rules_max + 1) {
             value.fault(
                 "has more than " + std::to_string(limits.member_rules_max) +
-                    " constraints other than fixed, forbidden and probability; the limit is "
+                    " constraints of the kinds that speak of many cells together; the limit is "
                     "member_rules_max",
                 true
             );
@@ -189,9 +392,10 @@ std::vector<Constraint> read_constraints(const Value& value, const RequestLimits
 OrderedJson write_constraints(const std::vector<Constraint>& constraints) {
     OrderedJson list = OrderedJson::array();
     for (const Constraint& constraint : constraints) {
-        OrderedJson written = {
-            {"kind", discrete::kRuleNames.at(constraint.rule.index())},
-            {"pieces", constraint.pieces}};
+        OrderedJson written = {{"kind", discrete::kRuleNames.at(constraint.rule.index())}};
+        if (discrete::names_pieces(constraint.rule)) {
+            written["pieces"] = constraint.pieces;
+        }
         std::visit(RuleWriter{written}, constraint.rule);
         write_region(constraint.region, written);
         list.push_back(std::move(written));

@@ -127,19 +127,31 @@ std::string to_json(const JobResult& result) {
     for (std::size_t i = 0; i < kSolvedByCount; ++i) {
         solved_by[kSolvedByNames[i]] = blocks.solved_by[i];
     }
+    OrderedJson stats = {
+        {"blocks_accepted", blocks.accepted()},
+        {"blocks_reverted", blocks.reverted},
+        {"blocks_declined", blocks.declined},
+        {"solved_by", solved_by},
+        {"backtracks", blocks.backtracks},
+        {"changed", result.stats.changed},
+        {"solve_seconds", result.solve_seconds}};
+    if (result.stats.objective) {
+        stats["objective"] = *result.stats.objective;
+    }
+    if (!result.stats.candidates.empty()) {
+        OrderedJson candidates = OrderedJson::array();
+        for (const auto& value : result.stats.candidates) {
+            candidates.push_back(value ? OrderedJson(*value) : OrderedJson(nullptr));
+        }
+        stats["candidates"] = std::move(candidates);
+    }
     return dump(OrderedJson{
         {"model", self + "/model.glb"},
         {"labels", self + "/labels.json"},
         {"bytes", result.bytes},
         {"sha256", result.sha256},
         {"size", OrderedJson::array({result.size.x, result.size.y, result.size.z})},
-        {"stats",
-         {{"blocks_accepted", blocks.accepted()},
-          {"blocks_reverted", blocks.reverted},
-          {"solved_by", solved_by},
-          {"backtracks", blocks.backtracks},
-          {"changed", result.stats.changed},
-          {"solve_seconds", result.solve_seconds}}}});
+        {"stats", std::move(stats)}});
 }
 
 std::string encode_tally(const SearchTally& tally) {
@@ -148,19 +160,20 @@ std::string encode_tally(const SearchTally& tally) {
         numbers.push_back(blocks);
     }
     numbers.push_back(tally.reverted);
+    numbers.push_back(tally.declined);
     numbers.push_back(tally.backtracks);
     return dump(numbers);
 }
 
 std::optional<SearchTally> decode_tally(std::string_view text) {
     const OrderedJson numbers = OrderedJson::parse(text, nullptr, false);
-    if (!numbers.is_array() || numbers.size() != kSolvedByCount + 2) {
+    if (!numbers.is_array() || numbers.size() != kSolvedByCount + 3) {
         return std::nullopt;
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         constexpr std::uint64_t kBlocksMax = 0xFFFFFFFF;
         if (!numbers[i].is_number_unsigned() ||
-            (i <= kSolvedByCount && numbers[i].get<std::uint64_t>() > kBlocksMax)) {
+            (i <= kSolvedByCount + 1 && numbers[i].get<std::uint64_t>() > kBlocksMax)) {
             return std::nullopt;
         }
     }
@@ -169,7 +182,8 @@ std::optional<SearchTally> decode_tally(std::string_view text) {
         tally.solved_by[i] = numbers[i].get<std::uint32_t>();
     }
     tally.reverted = numbers[kSolvedByCount].get<std::uint32_t>();
-    tally.backtracks = numbers[kSolvedByCount + 1].get<std::uint64_t>();
+    tally.declined = numbers[kSolvedByCount + 1].get<std::uint32_t>();
+    tally.backtracks = numbers[kSolvedByCount + 2].get<std::uint64_t>();
     return tally;
 }
 

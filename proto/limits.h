@@ -33,6 +33,9 @@ struct RequestLimits {
     std::size_t constraints_max = 1000;
     std::size_t member_rules_max = 32;  // constraints that take memory for every cell
     std::size_t masks_max = 16;
+    std::int32_t resemblance_window_max = 3;  // cells; its cost goes with the cube
+    std::size_t terms_max = 16;               // of one objective
+    std::int32_t best_of_max = 64;            // models made for one result
     MaskLimits mask;
     std::size_t voxels_max = 1'000'000;  // values of one constraint
     std::int32_t separation_max = 64;    // steps; its cost goes with the cube

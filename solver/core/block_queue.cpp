@@ -3,52 +3,52 @@
 namespace modelsynth {
 
 BlockQueue::BlockQueue(
-    const BlockDependencies& dependencies, std::uint32_t first, std::uint32_t run_ahead
+    const GridSize& model,
+    Periodic periodic,
+    std::span<const Box> blocks,
+    std::uint32_t first,
+    std::uint32_t run_ahead
 )
-    : dependencies_(dependencies),
-      run_ahead_(run_ahead),
-      waits_for_(dependencies.waits_for),
-      finished_(dependencies.waits_for.size()),
+    : model_(model),
+      periodic_(periodic),
+      blocks_(blocks),
+      window_(run_ahead),
+      admitted_(first),
       started_(first),
       next_report_(first) {
-    for (std::uint32_t block = first; block < waits_for_.size(); ++block) {
-        if (waits_for_[block] == 0) {
-            ready_.push(block);
-        }
-    }
+    admit();
 }
 
 std::optional<std::uint32_t> BlockQueue::take() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return is_over() || may_start(); });
+    changed_.wait(lock, [this] { return is_over() || !ready_.empty(); });
     return is_over() ? std::nullopt : std::optional(start());
 }
 
 BlockQueue::Step BlockQueue::next_step() {
     std::unique_lock lock(mutex_);
     const auto can_report = [this] {
-        return next_report_ < finished_.size() && finished_[next_report_];
+        return next_report_ < admitted_ && state(next_report_).is_finished;
     };
-    const auto at_end = [this] { return is_stopped_ || next_report_ == finished_.size(); };
-    changed_.wait(lock, [&] { return at_end() || can_report() || may_start(); });
+    const auto at_end = [this] { return is_stopped_ || next_report_ == blocks_.size(); };
+    changed_.wait(lock, [&] { return at_end() || can_report() || !ready_.empty(); });
     if (at_end()) {
         return {Step::Kind::kEnd, 0};
     }
     if (can_report()) {
-        changed_.notify_all();  // one more may run ahead
-        return {Step::Kind::kReport, next_report_++};
+        const std::uint32_t block = next_report_++;
+        admit();
+        changed_.notify_all();
+        return {Step::Kind::kReport, block};
     }
     return {Step::Kind::kSolve, start()};
 }
 
 void BlockQueue::finish(std::uint32_t block) {
     const std::lock_guard lock(mutex_);
-    finished_[block] = true;
-    for (std::uint32_t i = dependencies_.first_dependent[block];
-         i < dependencies_.first_dependent[block + 1];
-         ++i) {
-        const std::uint32_t dependent = dependencies_.dependents[i];
-        if (--waits_for_[dependent] == 0) {
+    state(block).is_finished = true;
+    for (const std::uint32_t dependent : state(block).dependents) {
+        if (--state(dependent).waits_for == 0) {
             ready_.push(dependent);
         }
     }
@@ -61,10 +61,25 @@ void BlockQueue::stop() {
     changed_.notify_all();
 }
 
-bool BlockQueue::is_over() const { return is_stopped_ || started_ == finished_.size(); }
+bool BlockQueue::is_over() const { return is_stopped_ || started_ == blocks_.size(); }
 
-bool BlockQueue::may_start() const {
-    return !ready_.empty() && ready_.top() < next_report_ + run_ahead_;
+void BlockQueue::admit() {
+    for (; admitted_ < blocks_.size() && admitted_ - next_report_ < window_.size(); ++admitted_) {
+        Waiting& later = state(admitted_);
+        later.waits_for = 0;
+        later.is_finished = false;
+        later.dependents.clear();
+        for (std::uint32_t earlier = next_report_; earlier < admitted_; ++earlier) {
+            if (!state(earlier).is_finished &&
+                blocks_meet(blocks_[earlier], blocks_[admitted_], model_, periodic_)) {
+                state(earlier).dependents.push_back(admitted_);
+                ++later.waits_for;
+            }
+        }
+        if (later.waits_for == 0) {
+            ready_.push(admitted_);
+        }
+    }
 }
 
 std::uint32_t BlockQueue::start() {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace modelsynth {
 
@@ -33,89 +32,6 @@ bool meet(
     };
     return at(0) || (is_periodic && (at(extent) || at(-extent)));
 }
-
-bool meet(const Box& a, const Box& b, const GridSize& model, Periodic periodic) {
-    return meet(a.min.x, a.max.x, b.min.x, b.max.x, periodic.x, model.x) &&
-           meet(a.min.y, a.max.y, b.min.y, b.max.y, periodic.y, model.y) &&
-           meet(a.min.z, a.max.z, b.min.z, b.max.z, periodic.z, model.z);
-}
-
-// Blocks by where they begin, so that those near a block are found without looking at all.
-class BlockIndex {
-  public:
-    // Requires: all blocks have the size of `block`.
-    BlockIndex(const GridSize& model, const GridSize& block, Periodic periodic)
-        : block_(block), periodic_(periodic) {
-        const auto count = [](std::int32_t extent, std::int32_t side) {
-            return (extent + side - 1) / side;
-        };
-        counts_ = {count(model.x, block.x), count(model.y, block.y), count(model.z, block.z)};
-        buckets_.resize(counts_.cell_count());
-    }
-
-    // A block of an earlier pass in the same place is forgotten: the new one waits for it, and who
-    // waits for the new one need not wait for it as well.
-    void add(const Box& block, std::uint32_t number) {
-        auto& bucket = buckets_[counts_.index(bucket_of(block))];
-        const auto same = std::find_if(bucket.begin(), bucket.end(), [&](const Entry& entry) {
-            return entry.box == block;
-        });
-        if (same == bucket.end()) {
-            bucket.push_back({block, number});
-        } else {
-            same->number = number;
-        }
-    }
-
-    // Calls visit(box, number) once for every block that may meet this one, and for some others.
-    template <class Visit>
-    void for_each_near(const Box& block, Visit visit) const {
-        const Cell centre = bucket_of(block);
-        const auto xs = near(centre.x, counts_.x, periodic_.x);
-        const auto ys = near(centre.y, counts_.y, periodic_.y);
-        const auto zs = near(centre.z, counts_.z, periodic_.z);
-        for (const std::int32_t y : ys) {
-            for (const std::int32_t z : zs) {
-                for (const std::int32_t x : xs) {
-                    for (const Entry& entry : buckets_[counts_.index({x, y, z})]) {
-                        visit(entry.box, entry.number);
-                    }
-                }
-            }
-        }
-    }
-
-  private:
-    struct Entry {
-        Box box;
-        std::uint32_t number;
-    };
-
-    [[nodiscard]] Cell bucket_of(const Box& block) const {
-        return {block.min.x / block_.x, block.min.y / block_.y, block.min.z / block_.z};
-    }
-
-    // Blocks that meet begin at most one block apart. The last bucket of an axis may be cut off, so
-    // that across a seam the one before it is near as well.
-    static std::vector<std::int32_t> near(std::int32_t at, std::int32_t count, bool is_periodic) {
-        std::vector<std::int32_t> result;
-        for (std::int32_t i = at - 2; i <= at + 2; ++i) {
-            if (is_periodic) {
-                result.push_back((i % count + count) % count);
-            } else if (i >= 0 && i < count) {
-                result.push_back(i);
-            }
-        }
-        std::sort(result.begin(), result.end());
-        result.erase(std::unique(result.begin(), result.end()), result.end());
-        return result;
-    }
-
-    GridSize block_;
-    Periodic periodic_;
-    GridSize counts_;
-    std::vector<std::vector<Entry>> buckets_;
-};
 
 }  // namespace
 
@@ -151,38 +67,10 @@ Result<std::vector<Box>> schedule_blocks(
     return blocks;
 }
 
-BlockDependencies find_dependencies(
-    const GridSize& model, Periodic periodic, std::span<const Box> blocks, std::uint32_t first
-) {
-    BlockDependencies result;
-    result.waits_for.resize(blocks.size());
-    result.first_dependent.resize(blocks.size() + 1);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // (earlier, later), by later
-    if (!blocks.empty()) {
-        BlockIndex index(model, blocks.front().size(), periodic);
-        for (std::uint32_t later = first; later < blocks.size(); ++later) {
-            const Box& block = blocks[later];
-            index.for_each_near(block, [&](const Box& box, std::uint32_t earlier) {
-                if (meet(box, block, model, periodic)) {
-                    pairs.emplace_back(earlier, later);
-                    ++result.waits_for[later];
-                    ++result.first_dependent[earlier + 1];
-                }
-            });
-            index.add(block, later);
-        }
-    }
-    for (std::size_t block = 0; block < blocks.size(); ++block) {
-        result.first_dependent[block + 1] += result.first_dependent[block];
-    }
-    result.dependents.resize(pairs.size());
-    std::vector<std::uint32_t> next(
-        result.first_dependent.begin(), result.first_dependent.end() - 1
-    );
-    for (const auto& [earlier, later] : pairs) {
-        result.dependents[next[earlier]++] = later;
-    }
-    return result;
+bool blocks_meet(const Box& a, const Box& b, const GridSize& model, Periodic periodic) {
+    return meet(a.min.x, a.max.x, b.min.x, b.max.x, periodic.x, model.x) &&
+           meet(a.min.y, a.max.y, b.min.y, b.max.y, periodic.y, model.y) &&
+           meet(a.min.z, a.max.z, b.min.z, b.max.z, periodic.z, model.z);
 }
 
 }  // namespace modelsynth

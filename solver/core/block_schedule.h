@@ -27,22 +27,12 @@ struct BlockLayout {
     const GridSize& model, const BlockLayout& layout, std::size_t block_count_max
 );
 
-// Which blocks of a schedule have to wait for which, so that blocks may be modified at the same
-// time and all comes out as if they were modified one after the other.
-struct BlockDependencies {
-    std::vector<std::uint32_t> waits_for;  // by block: how many earlier ones it waits for
-    // The blocks that wait for block b: dependents[first_dependent[b] ... first_dependent[b +
-    // 1]-1].
-    std::vector<std::uint32_t> first_dependent;
-    std::vector<std::uint32_t> dependents;
-};
-
-// A block changes its cells and reads those that touch them, so it waits for every earlier block
-// that it overlaps or touches, also across the seam of a periodic axis; of several in one place for
-// the last, which waits for the others. The blocks before `first` are done: nobody waits for them.
-// Cost: O(blocks * blocks that touch one).
-[[nodiscard]] BlockDependencies find_dependencies(
-    const GridSize& model, Periodic periodic, std::span<const Box> blocks, std::uint32_t first
+// Whether two blocks overlap or touch, also across the seam of a periodic axis. A block changes its
+// cells and reads those that touch them: of two blocks that meet, the later one has to wait for the
+// earlier; others may be modified at the same time, and all comes out as if they were modified one
+// after the other.
+[[nodiscard]] bool blocks_meet(
+    const Box& a, const Box& b, const GridSize& model, Periodic periodic
 );
 
 }  // namespace modelsynth

@@ -3,6 +3,7 @@
 #include "solver/core/block_bases.h"
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/label_chooser.h"
 #include "solver/core/random.h"
 #include "solver/core/search.h"
 #include "solver/core/search_tally.h"
@@ -53,6 +54,7 @@ struct BlockOptions {
     // their board stands with it; the same is so afterwards. Null: none.
     ConstraintBoard* board = nullptr;
     std::optional<Pin> pin = std::nullopt;
+    const LabelChooser* chooser = nullptr;  // in place of the weights alone; null: none
 };
 
 // How an attempt at a block goes about it.
@@ -244,6 +246,10 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         }
         start_.assign(catalog_->all_labels().begin(), catalog_->all_labels().end());
         number_weights(part);
+        std::optional<PartChooser> chooser;
+        if (options.chooser != nullptr) {
+            chooser.emplace(*options.chooser).enter(part, model);
+        }
         for (result.attempts = 1; result.attempts <= options.attempts; ++result.attempts) {
             if (result.attempts > 1) {
                 catalog_->restore(start_);
@@ -255,7 +261,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
             key.attempt = result.attempts;
             key.purpose = kPurposeSearch;
             const std::uint32_t backtracks_before = result.backtracks;
-            const SearchOutcome outcome = run(options, plan, key, stop, result.backtracks);
+            const SearchOutcome outcome =
+                run(options, plan, chooser ? &*chooser : nullptr, key, stop, result.backtracks);
             if (outcome == SearchOutcome::kStopped) {
                 result.outcome = BlockOutcome::kStopped;
                 return result;
@@ -351,6 +358,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     SearchOutcome run(
         const BlockOptions& options,
         const AttemptPlan& plan,
+        PartChooser* chooser,
         const RandomKey& key,
         const std::stop_token& stop,
         std::uint32_t& backtracks
@@ -358,7 +366,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         RandomStream random(key);
         const PartWeights weights = {weights_, weight_numbers_};
         const auto with = [&](auto picker) {
-            Search search(*catalog_, picker, weights, options.board, random, stop);
+            Search search(*catalog_, picker, weights, {options.board, chooser}, random, stop);
             const SearchOutcome outcome = search.run(plan.budget);
             backtracks += search.backtracks();
             return outcome;

@@ -2,6 +2,7 @@
 
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/label_chooser.h"
 #include "solver/core/random.h"
 #include "solver/core/site_weights.h"
 
@@ -137,6 +138,12 @@ struct SearchBudget {
     std::uint32_t backtracks = 0;  // choices taken back; 0: the first dead end is the end
 };
 
+// What a search may have beside relations and weights; null: none.
+struct SearchAids {
+    ConstraintBoard* board = nullptr;  // the constraints beside the relations; follows the catalog
+    PartChooser* chooser = nullptr;    // chooses labels in place of the weights alone
+};
+
 // The loop of Algorithm 3.1 over an arc-consistent catalog: pick a site, draw a label, propagate.
 // A label that propagation refutes is taken back and removed, which keeps the catalog an outer
 // bound of the ideal one. When its removal is refuted too, the choices before lead nowhere.
@@ -149,19 +156,19 @@ struct SearchBudget {
 template <class CatalogType, class Picker>
 class Search {
   public:
-    // `board`: the constraints beside the relations, which follow the catalog; null: none.
     Search(
         CatalogType& catalog,
         Picker& picker,
         const PartWeights& weights,
-        ConstraintBoard* board,
+        const SearchAids& aids,
         RandomStream& random,
         std::stop_token stop
     )
         : catalog_(catalog),
           picker_(picker),
           weights_(weights),
-          board_(board),
+          board_(aids.board),
+          chooser_(aids.chooser),
           random_(random),
           stop_(std::move(stop)) {}
 
@@ -171,7 +178,7 @@ class Search {
             if (stop_.stop_requested()) {
                 return SearchOutcome::kStopped;
             }
-            const Label label = weights_.at(site).draw(catalog_.labels(site), random_);
+            const Label label = choose(site);
             const auto mark = catalog_.mark();
             const std::size_t position = picker_.position();
             catalog_.assign(site, label);
@@ -218,6 +225,12 @@ class Search {
     static constexpr std::uint32_t kPatience = 10;
     static constexpr std::size_t kFirstJump = 4;
     static constexpr std::uint32_t kJumpDoublingsMax = 10;
+
+    Label choose(Site site) {
+        const LabelWeights& weights = weights_.at(site);
+        return chooser_ == nullptr ? weights.draw(catalog_.labels(site), random_)
+                                   : chooser_->choose(catalog_, site, weights, random_);
+    }
 
     Propagation refute(Site site, Label label) {
         return catalog_.remove(site, label) ? propagate() : Propagation::kContradiction;
@@ -271,6 +284,7 @@ class Search {
     Picker& picker_;
     PartWeights weights_;
     ConstraintBoard* board_;
+    PartChooser* chooser_;
     RandomStream& random_;
     std::stop_token stop_;
     std::vector<Choice> choices_;

@@ -21,7 +21,8 @@ inline constexpr std::array<const char*, kSolvedByCount> kSolvedByNames = {
 // What became of the blocks of a model so far.
 struct SearchTally {
     std::array<std::uint32_t, kSolvedByCount> solved_by = {};  // blocks, by SolvedBy
-    std::uint32_t reverted = 0;                                // blocks
+    std::uint32_t reverted = 0;                                // blocks, declined ones included
+    std::uint32_t declined = 0;    // blocks that were solved, but worse than what they were
     std::uint64_t backtracks = 0;  // choices taken back, in reverted blocks too
 
     [[nodiscard]] std::uint32_t accepted() const {

@@ -7,6 +7,8 @@
 #include "solver/discrete/constraints/separation_constraint.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/region.h"
+#include "solver/discrete/resemblance.h"
+#include "solver/discrete/symmetries.h"
 
 #include <limits>
 #include <utility>
@@ -44,10 +46,11 @@ class ConstraintReader {
                             " different tables of weights; use masks of fewer grey values",
                         {}});
                 }
-            } else {
+            } else if (is_member_rule(constraint.rule)) {
                 add_member_rule(i, named, problem);
             }
         }
+        problem.symmetries = read_symmetries(problem);
         return {};
     }
 
@@ -106,6 +109,23 @@ class ConstraintReader {
         problem.member_rules.push_back(std::move(rule));
     }
 
+    [[nodiscard]] std::unique_ptr<const Symmetries> read_symmetries(const Problem& problem) const {
+        std::vector<Symmetries::Generator> generators;
+        for (const Constraint& constraint : parameters_.constraints) {
+            if (const auto* symmetry = std::get_if<Symmetry>(&constraint.rule)) {
+                generators.push_back(
+                    {CellMap(*symmetry, constraint.region, size_, problem.periodic),
+                     label_images(labels_.size(), pairs_of(labels_, symmetry->mirror))}
+                );
+            }
+        }
+        return generators.empty()
+                   ? nullptr
+                   : std::make_unique<const Symmetries>(
+                         size_, problem.periodic, problem.relations, std::move(generators)
+                     );
+    }
+
     const Parameters& parameters_;
     LabelOfName labels_;
     GridSize size_;
@@ -146,6 +166,19 @@ Result<void> read_constraints(
     const Example& example, const Parameters& parameters, Problem& problem, WeightTables& weights
 ) {
     return ConstraintReader(example, parameters).read(problem, weights);
+}
+
+std::unique_ptr<const LabelChooser> make_chooser(
+    const Example& example, const Parameters& parameters, const Problem& problem
+) {
+    for (const Constraint& constraint : parameters.constraints) {
+        if (const auto* resemblance = std::get_if<Resemblance>(&constraint.rule)) {
+            return std::make_unique<ResemblanceChooser>(
+                example, *resemblance, problem.size, problem.periodic, problem.weights.table(0)
+            );
+        }
+    }
+    return nullptr;
 }
 
 std::unique_ptr<ConstraintBoard> make_board(

@@ -19,6 +19,11 @@ namespace modelsynth::discrete {
     const Example& example, const Parameters& parameters, Problem& problem, WeightTables& weights
 );
 
+// What chooses labels where a resemblance is asked for; null otherwise. `problem` has its weights.
+[[nodiscard]] std::unique_ptr<const LabelChooser> make_chooser(
+    const Example& example, const Parameters& parameters, const Problem& problem
+);
+
 // The member rules of the problem, with nothing decided. The number of a constraint on the board
 // is that of `rules`.
 // Requires: rules of the problem, perhaps changed; the problem outlives the board.

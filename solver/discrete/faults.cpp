@@ -2,7 +2,10 @@
 
 #include "solver/discrete/names.h"
 #include "solver/discrete/region.h"
+#include "solver/discrete/resemblance.h"
+#include "solver/discrete/symmetries.h"
 
+#include <array>
 #include <utility>
 
 namespace modelsynth::discrete {
@@ -92,17 +95,127 @@ void find_rule_faults(
     }
 }
 
+void find_symmetry_faults(
+    const LabelOfName& labels,
+    const Symmetry& symmetry,
+    const Region& region,
+    const GridSize& size,
+    bool is_region_good,
+    const std::string& pointer,
+    std::vector<Fault>& faults
+) {
+    const std::size_t before = faults.size();
+    for (const auto& [piece, image] : symmetry.mirror) {
+        for (const std::string& name : {piece, image}) {
+            if (!labels.contains(name)) {
+                faults.push_back(
+                    {pointer + "/mirror/" + escape_pointer(piece),
+                     "the example has no piece \"" + name + "\""}
+                );
+            }
+        }
+    }
+    if (is_region_good && faults.size() == before) {
+        if (const auto fault = find_symmetry_fault(
+                symmetry, region, size, labels.size(), pairs_of(labels, symmetry.mirror)
+            )) {
+            faults.push_back({pointer + fault->field, fault->detail});
+        }
+    }
+}
+
+void find_term_faults(
+    const LabelOfName& labels,
+    const std::vector<Term>& terms,
+    const Region& region,
+    const std::string& pointer,
+    std::vector<Fault>& faults
+) {
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+        const std::string term = pointer + "/terms/" + std::to_string(t);
+        find_unknown_pieces(labels, terms[t].pieces, term + "/pieces", faults);
+        if (terms[t].kind == Term::Kind::kShape && region == Region{}) {
+            faults.push_back(
+                {term + "/term",
+                 "a shape is that of the constraint's box, cells, mask or voxels, and it has none"}
+            );
+        }
+    }
+}
+
+// What the kinds that weigh whole models ask for.
+void find_weighing_faults(
+    const LabelOfName& labels,
+    const Parameters& parameters,
+    const Constraint& constraint,
+    const std::string& pointer,
+    std::vector<Fault>& faults
+) {
+    if (const auto* objective = std::get_if<Objective>(&constraint.rule)) {
+        find_term_faults(labels, objective->terms, constraint.region, pointer, faults);
+        if (!*parameters.blocks) {
+            faults.push_back(
+                {pointer + "/kind",
+                 "an objective is weighed block by block, and blocks is null; best_of weighs whole "
+                 "models"}
+            );
+        }
+    }
+    if (const auto* best = std::get_if<BestOf>(&constraint.rule)) {
+        find_term_faults(labels, best->terms, constraint.region, pointer, faults);
+    }
+}
+
+void find_resemblance_faults(
+    const Example& example,
+    const Constraint& constraint,
+    const std::string& pointer,
+    std::vector<Fault>& faults
+) {
+    const auto* resemblance = std::get_if<Resemblance>(&constraint.rule);
+    if (resemblance == nullptr) {
+        return;
+    }
+    if (example.size.cell_count() == 0) {
+        faults.push_back({pointer + "/kind", "the example has no arrangement to resemble"});
+    } else if (resemblance_cost(example, *resemblance) > kResemblanceCostMax) {
+        faults.push_back(
+            {pointer + "/window",
+             "the example's cells times the cells of a window are more than " +
+                 std::to_string(kResemblanceCostMax),
+             true}
+        );
+    }
+}
+
 void find_constraint_faults(
-    const LabelOfName& labels, const Parameters& parameters, std::vector<Fault>& faults
+    const Example& example,
+    const LabelOfName& labels,
+    const Parameters& parameters,
+    std::vector<Fault>& faults
 ) {
     const GridSize size = *parameters.size;
+    std::array<bool, std::variant_size_v<Rule>> is_seen = {};
     for (std::size_t i = 0; i < parameters.constraints.size(); ++i) {
         const Constraint& constraint = parameters.constraints[i];
         const std::string pointer = "/constraints/" + std::to_string(i);
         find_unknown_pieces(labels, constraint.pieces, pointer + "/pieces", faults);
         const std::size_t before = faults.size();
         find_region_faults(constraint.region, size, pointer, faults);
-        find_rule_faults(constraint, size, faults.size() == before, pointer, faults);
+        const bool is_region_good = faults.size() == before;
+        find_rule_faults(constraint, size, is_region_good, pointer, faults);
+        if (const auto* symmetry = std::get_if<Symmetry>(&constraint.rule)) {
+            find_symmetry_faults(
+                labels, *symmetry, constraint.region, size, is_region_good, pointer, faults
+            );
+        }
+        find_weighing_faults(labels, parameters, constraint, pointer, faults);
+        find_resemblance_faults(example, constraint, pointer, faults);
+        const bool is_single = std::holds_alternative<BestOf>(constraint.rule) ||
+                               std::holds_alternative<Resemblance>(constraint.rule);
+        if (is_single && std::exchange(is_seen.at(constraint.rule.index()), true)) {
+            faults.push_back({pointer + "/kind", "there is one of this kind before it"});
+        }
     }
 }
 
@@ -141,7 +254,7 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
             }
         }
     }
-    find_constraint_faults(labels, parameters, faults);
+    find_constraint_faults(example, labels, parameters, faults);
     return faults;
 }
 

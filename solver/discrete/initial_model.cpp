@@ -1,12 +1,14 @@
 #include "solver/discrete/initial_model.h"
 
-#include "solver/core/block_search.h"
 #include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/mender.h"
 #include "solver/discrete/names.h"
+#include "solver/discrete/plain_layers.h"
 #include "solver/discrete/planting.h"
+#include "solver/discrete/repeated_tile.h"
+#include "solver/discrete/search_keys.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -14,237 +16,9 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// RandomKey::block of searches that are no block of the schedule.
-constexpr std::uint32_t kWholeKey = 0xFFFFFFFF;
-constexpr std::uint32_t kTileKey = 0xFFFFFFFE;
-constexpr std::uint32_t kMendKey = 0xFFFFFFFD;
-
-constexpr std::int32_t kTileMax = 8;
-constexpr std::uint32_t kTileAttempts = 4;
-constexpr std::uint32_t kMendAttempts = 8;
 // Beyond, the search needs more memory than a model in blocks should.
 constexpr std::size_t kWholeFirstCellsMax = std::size_t{1} << 17;
 constexpr std::uint32_t kWholeFirstAttempts = 4;
-
-// What most cells of each floor may be.
-std::vector<LabelSet> common_domains(const Problem& problem) {
-    std::vector<LabelSet> floors;
-    std::size_t site = 0;
-    for (std::int32_t y = 0; y < problem.size.y; ++y) {
-        std::map<const LabelSet*, std::size_t> counts;
-        const auto floor_sites =
-            static_cast<std::size_t>(problem.size.x) * static_cast<std::size_t>(problem.size.z);
-        const LabelSet* most = nullptr;
-        std::size_t most_count = 0;
-        for (std::size_t i = 0; i < floor_sites; ++i, ++site) {
-            const LabelSet* set = &problem.domains.at(static_cast<Site>(site));
-            const std::size_t count = ++counts[set];
-            if (count > most_count) {
-                most = set;
-                most_count = count;
-            }
-        }
-        floors.push_back(*most);
-    }
-    return floors;
-}
-
-// One label a floor, each next to itself along x and z, chosen so that as much as possible is
-// empty and the rest is common.
-std::optional<std::vector<Label>> find_layers(const Example& example, const Problem& problem) {
-    const std::size_t label_count = example.pieces.size();
-    const auto along = [&problem](Direction direction, Label a, Label b) {
-        return problem.relations.allows(static_cast<RelationId>(direction), a, b);
-    };
-
-    struct Best {
-        std::uint64_t score = 0;  // 0: not possible
-        Label below = kNoLabel;
-    };
-
-    const std::vector<LabelSet> floors = common_domains(problem);
-    std::vector<std::vector<Best>> best(floors.size(), std::vector<Best>(label_count));
-    constexpr std::uint64_t kEmptyScore = std::uint64_t{1} << 32;
-    for (std::size_t y = 0; y < floors.size(); ++y) {
-        for_each_label(floors[y].words(), [&](Label label) {
-            if (!along(Direction::kEast, label, label) || !along(Direction::kSouth, label, label)) {
-                return;
-            }
-            const std::uint64_t own =
-                example.empty == label ? kEmptyScore : 1 + problem.weights.table(0).of(label);
-            if (y == 0) {
-                best[y][label] = {own, kNoLabel};
-                return;
-            }
-            for (std::size_t below = 0; below < label_count; ++below) {
-                const Best& under = best[y - 1][below];
-                if (under.score > 0 && along(Direction::kUp, static_cast<Label>(below), label) &&
-                    under.score + own > best[y][label].score) {
-                    best[y][label] = {under.score + own, static_cast<Label>(below)};
-                }
-            }
-        });
-    }
-    const auto top =
-        std::max_element(best.back().begin(), best.back().end(), [](const Best& a, const Best& b) {
-            return a.score < b.score;
-        });
-    if (top->score == 0) {
-        return std::nullopt;
-    }
-    std::vector<Label> layers(floors.size());
-    auto label = static_cast<Label>(top - best.back().begin());
-    for (std::size_t y = floors.size(); y-- > 0;) {
-        layers[y] = label;
-        label = best[y][label].below;
-    }
-    if (problem.periodic.y && !along(Direction::kUp, layers.back(), layers.front())) {
-        return std::nullopt;
-    }
-    return layers;
-}
-
-std::vector<Label> spread_layers(const Problem& problem, const std::vector<Label>& layers) {
-    std::vector<Label> model(problem.size.cell_count());
-    const std::size_t floor_sites = model.size() / layers.size();
-    for (std::size_t site = 0; site < model.size(); ++site) {
-        model[site] = layers[site / floor_sites];
-    }
-    return model;
-}
-
-// A model of tile_x by tile_z columns that closes on itself, repeated over the whole.
-std::optional<std::vector<Label>> find_tile(
-    const Problem& problem,
-    const std::vector<LabelSet>& floors,
-    std::int32_t tile_x,
-    std::int32_t tile_z,
-    std::uint64_t seed,
-    const std::stop_token& stop
-) {
-    const GridSize size = {tile_x, problem.size.y, tile_z};
-    const GridPart part(size, {true, problem.periodic.y, true}, Box::whole(size));
-    SiteDomains domains(size.cell_count(), LabelSet::all(problem.relations.label_count()));
-    for_each_cell(Box::whole(size), [&](const Cell& cell) {
-        domains.narrow(
-            static_cast<Site>(size.index(cell)), floors[static_cast<std::size_t>(cell.y)]
-        );
-    });
-    std::vector<Label> tile(size.cell_count(), kNoLabel);
-    const std::vector<Site> scan = column_order(size);
-    BlockSearch<GridPart> search(problem.relations, domains, problem.weights);
-    const BlockResult result = search.modify(
-        part,
-        std::span<Label>(tile),
-        {kTileAttempts, Order::kScan, scan},
-        {seed, kTileKey, 0, 0},
-        stop
-    );
-    if (result.outcome != BlockOutcome::kAccepted) {
-        return std::nullopt;
-    }
-    std::vector<Label> model(problem.size.cell_count());
-    for_each_cell(Box::whole(problem.size), [&](const Cell& cell) {
-        model[problem.size.index(cell)] =
-            tile[size.index({cell.x % tile_x, cell.y, cell.z % tile_z})];
-    });
-    return model;
-}
-
-std::optional<std::vector<Label>> find_any_tile(
-    const Problem& problem, std::uint64_t seed, const std::stop_token& stop
-) {
-    const std::vector<LabelSet> floors = common_domains(problem);
-    const auto divides = [](bool periodic, std::int32_t extent, std::int32_t tile) {
-        return tile <= extent && (!periodic || extent % tile == 0);
-    };
-    for (std::int32_t sum = 2; sum <= 2 * kTileMax; ++sum) {
-        for (std::int32_t x = std::max(1, sum - kTileMax); x <= std::min(kTileMax, sum - 1); ++x) {
-            const std::int32_t z = sum - x;
-            if (stop.stop_requested()) {
-                return std::nullopt;
-            }
-            if (!divides(problem.periodic.x, problem.size.x, x) ||
-                !divides(problem.periodic.z, problem.size.z, z)) {
-                continue;
-            }
-            if (auto model = find_tile(problem, floors, x, z, seed, stop)) {
-                return model;
-            }
-        }
-    }
-    return std::nullopt;
-}
-
-// Mends the cells whose label their own domain forbids. False when a box as large as the whole
-// could not be made.
-class Mender {
-  public:
-    Mender(
-        const Problem& problem,
-        BlockSearch<GridPart>& search,
-        std::uint64_t seed,
-        const std::stop_token& stop
-    )
-        : problem_(problem), search_(search), seed_(seed), stop_(stop) {}
-
-    bool mend(std::vector<Label>& model) {
-        bool any = false;
-        for (std::size_t site = 0; site < model.size(); ++site) {
-            if (!problem_.domains.at(static_cast<Site>(site)).contains(model[site])) {
-                model[site] = kNoLabel;
-                any = true;
-            }
-        }
-        for (std::size_t site = 0; any && site < model.size(); ++site) {
-            if (model[site] == kNoLabel && !mend_around(model, problem_.size.cell(site))) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-  private:
-    bool mend_around(std::vector<Label>& model, const Cell& centre) {
-        for (std::int32_t reach = 1;; reach *= 2) {
-            const Box box = box_around(centre, reach);
-            if (stop_.stop_requested()) {
-                return false;
-            }
-            const GridPart part(problem_.size, problem_.periodic, box);
-            const std::vector<Site> scan = column_order(box.size());
-            const BlockResult result = search_.modify(
-                part,
-                std::span<Label>(model),
-                {kMendAttempts, Order::kMinEntropy, scan},
-                {seed_, kMendKey, 0, 0},
-                stop_
-            );
-            if (result.outcome == BlockOutcome::kAccepted) {
-                return true;
-            }
-            if (box == Box::whole(problem_.size)) {
-                return false;
-            }
-        }
-    }
-
-    [[nodiscard]] Box box_around(const Cell& centre, std::int32_t reach) const {
-        const GridSize size = problem_.size;
-        const auto low = [reach](std::int32_t at) { return std::max(0, at - reach); };
-        const auto high = [reach](std::int32_t at, std::int32_t extent) {
-            return std::min(extent, at + reach + 1);
-        };
-        return {
-            {low(centre.x), low(centre.y), low(centre.z)},
-            {high(centre.x, size.x), high(centre.y, size.y), high(centre.z, size.z)}};
-    }
-
-    const Problem& problem_;
-    BlockSearch<GridPart>& search_;
-    std::uint64_t seed_;
-    const std::stop_token& stop_;
-};
 
 Error gave_up(const Example& example, const Problem& problem) {
     LabelSet repeats(example.pieces.size());
@@ -285,7 +59,7 @@ class Finder {
   public:
     Finder(
         const Preparation& preparation,
-        BlockSearch<GridPart>& search,
+        BoxSearch& search,
         std::uint64_t seed,
         const std::stop_token& stop
     )
@@ -304,8 +78,10 @@ class Finder {
         Mender mender(problem_, search_, seed_, stop_);
         const auto layers =
             preparation_.is_plain_model_rigid() ? std::nullopt : find_layers(example_, problem_);
-        if (layers) {
-            InitialModel model = {spread_layers(problem_, *layers), false};
+        if (layers || has_no_gap()) {
+            InitialModel model = {
+                layers ? spread_layers(problem_, *layers) : problem_.start->labels, false};
+            put_start(model.labels);
             if (mender.mend(model.labels)) {
                 return model;
             }
@@ -319,9 +95,12 @@ class Finder {
                     return std::move(**model);
                 }
             }
-            auto tiled = find_any_tile(problem_, seed_, stop_);
-            if (tiled && mender.mend(*tiled)) {
-                return InitialModel{std::move(*tiled), false};
+            // A tile that repeats is seldom its own image, nor does it fit to what is kept.
+            if (problem_.symmetries == nullptr && !problem_.start) {
+                auto tiled = find_any_tile(problem_, seed_, stop_);
+                if (tiled && mender.mend(*tiled)) {
+                    return InitialModel{std::move(*tiled), false};
+                }
             }
         }
         auto model = solve_whole(kWholeAttempts, nullptr);
@@ -361,6 +140,21 @@ class Finder {
     }
 
   private:
+    // Whether the model to start from covers all.
+    [[nodiscard]] bool has_no_gap() const {
+        return problem_.start &&
+               std::count(problem_.start->labels.begin(), problem_.start->labels.end(), kNoLabel) ==
+                   0;
+    }
+
+    // Puts the model to start from over this one.
+    void put_start(std::vector<Label>& model) const {
+        for (std::size_t site = 0; problem_.start && site < model.size(); ++site) {
+            const Label label = problem_.start->labels[site];
+            model[site] = label == kNoLabel ? model[site] : label;
+        }
+    }
+
     static Error stopped() { return {ErrorCode::kCancelled, "stopped", {}}; }
 
     // Nothing when no attempt succeeded.
@@ -368,15 +162,15 @@ class Finder {
         std::uint32_t attempts, ConstraintBoard* board
     ) {
         InitialModel model = {std::vector<Label>(problem_.size.cell_count(), kNoLabel), true};
-        const GridPart part(problem_.size, problem_.periodic, Box::whole(problem_.size));
-        const std::vector<Site> scan = column_order(problem_.size);
-        BlockOptions options = {attempts, Order::kScan, scan};
-        options.board = board;
         if (board != nullptr) {
             board->start(model.labels);
         }
         const BlockResult result = search_.modify(
-            part, std::span<Label>(model.labels), options, {seed_, kWholeKey, 0, 0}, stop_
+            Box::whole(problem_.size),
+            std::span<Label>(model.labels),
+            {attempts, Order::kScan, board},
+            {seed_, kWholeKey, 0, 0},
+            stop_
         );
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
@@ -394,25 +188,12 @@ class Finder {
     const Preparation& preparation_;
     const Example& example_;
     const Problem& problem_;
-    BlockSearch<GridPart>& search_;
+    BoxSearch& search_;
     std::uint64_t seed_;
     const std::stop_token& stop_;
 };
 
 }  // namespace
-
-std::vector<Site> column_order(const GridSize& size) {
-    std::vector<Site> order;
-    order.reserve(size.cell_count());
-    for (std::int32_t x = 0; x < size.x; ++x) {
-        for (std::int32_t z = 0; z < size.z; ++z) {
-            for (std::int32_t y = 0; y < size.y; ++y) {
-                order.push_back(static_cast<Site>(size.index({x, y, z})));
-            }
-        }
-    }
-    return order;
-}
 
 Error contradiction_of(const Example& example, const Problem& problem, const BlockResult& result) {
     if (result.impossible_constraint) {
@@ -437,12 +218,14 @@ Error contradiction_of(const Example& example, const Problem& problem, const Blo
 
 std::optional<std::vector<Label>> find_plain_model(const Example& example, const Problem& problem) {
     const auto layers = find_layers(example, problem);
-    if (!layers) {
+    if (!layers || problem.start) {
         return std::nullopt;
     }
     std::vector<Label> model = spread_layers(problem, *layers);
-    for (std::size_t site = 0; site < model.size(); ++site) {
-        if (!problem.domains.at(static_cast<Site>(site)).contains(model[site])) {
+    for (std::size_t i = 0; i < model.size(); ++i) {
+        const auto site = static_cast<Site>(i);
+        if (!problem.domains.at(site).contains(model[site]) ||
+            (problem.symmetries != nullptr && problem.symmetries->is_violated_at(model, site))) {
             return std::nullopt;
         }
     }
@@ -451,7 +234,7 @@ std::optional<std::vector<Label>> find_plain_model(const Example& example, const
 
 Result<InitialModel> find_initial_model(
     const Preparation& preparation,
-    BlockSearch<GridPart>& search,
+    BoxSearch& search,
     std::uint64_t seed,
     const std::stop_token& stop
 ) {

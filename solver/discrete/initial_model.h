@@ -1,8 +1,8 @@
 #pragma once
 
 #include "solver/core/block_search.h"
-#include "solver/core/grid_topology.h"
 #include "solver/core/result.h"
+#include "solver/discrete/box_search.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/preparation.h"
 #include "solver/discrete/problem.h"
@@ -25,15 +25,15 @@ struct InitialModel {
 //   2. the whole at once, by search, a few times, unless it is large;
 //   3. a small tile that repeats along x and z;
 //   4. the whole at once, many times.
-// Where 1 and 3 leave cells wrong, because something is fixed there, they are mended by making a
-// growing box around them anew. Where a count asks for more pieces, they are planted; what other
-// constraints ask beyond that only a search of the whole can give.
-// `search` is one of the preparation's. Deterministic in (preparation, seed). Fails: kContradiction
-// when propagation proves that nothing fits, kGaveUp when nothing was found, kCancelled; the
-// message names pieces and sides, or the constraint.
+// A model to start from is put over the first one. Where cells are wrong then, because something is
+// fixed there or along its seam, they are mended by making a growing box around them anew. Where a
+// count asks for more pieces, they are planted; what other constraints ask beyond that only a
+// search of the whole can give. `search` is one of the preparation's. Deterministic in
+// (preparation, seed). Fails: kContradiction when propagation proves that nothing fits, kGaveUp
+// when nothing was found, kCancelled; the message names pieces and sides, or the constraint.
 [[nodiscard]] Result<InitialModel> find_initial_model(
     const Preparation& preparation,
-    BlockSearch<GridPart>& search,
+    BoxSearch& search,
     std::uint64_t seed,
     const std::stop_token& stop
 );
@@ -43,9 +43,6 @@ struct InitialModel {
 [[nodiscard]] std::optional<std::vector<Label>> find_plain_model(
     const Example& example, const Problem& problem
 );
-
-// The sites of a grid column by column, each from the bottom up: the order of Algorithm 3.1.
-[[nodiscard]] std::vector<Site> column_order(const GridSize& size);
 
 // The error for a search of the whole that was proved impossible.
 [[nodiscard]] Error contradiction_of(

@@ -31,6 +31,16 @@ LabelSet set_of(const LabelOfName& labels, const std::vector<std::string>& names
     return set;
 }
 
+std::vector<std::pair<Label, Label>> pairs_of(
+    const LabelOfName& labels, std::span<const std::pair<std::string, std::string>> names
+) {
+    std::vector<std::pair<Label, Label>> pairs;
+    for (const auto& [from, to] : names) {
+        pairs.emplace_back(labels.at(from), labels.at(to));
+    }
+    return pairs;
+}
+
 // The outermost layer of a grid on one side.
 Box layer(const GridSize& size, std::size_t side) {
     Box box = Box::whole(size);

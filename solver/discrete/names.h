@@ -6,8 +6,10 @@
 #include "solver/discrete/problem.h"
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace modelsynth::discrete {
@@ -20,6 +22,11 @@ using LabelOfName = std::unordered_map<std::string, Label>;
 
 // Requires: every name is known.
 [[nodiscard]] LabelSet set_of(const LabelOfName& labels, const std::vector<std::string>& names);
+
+// Requires: every name is known.
+[[nodiscard]] std::vector<std::pair<Label, Label>> pairs_of(
+    const LabelOfName& labels, std::span<const std::pair<std::string, std::string>> names
+);
 
 // "tower", "wall" and "gate": names of pieces as a person reads them, at most eight.
 [[nodiscard]] std::string list_names(const Example& example, const LabelSet& labels);

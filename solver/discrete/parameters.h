@@ -114,8 +114,81 @@ struct Path {
     friend bool operator==(const Path&, const Path&) = default;
 };
 
-using Rule = std::
-    variant<Fixed, Forbidden, Probability, Count, Separation, MaxRun, Connected, Acyclic, Path>;
+// Where a piece stands at a cell, its image stands at the cell's image (2007 paper, 4.1; thesis
+// 3.5.2).
+struct Symmetry {
+    enum class Kind : std::uint8_t { kReflectX, kReflectZ, kHalfTurn, kQuarterTurn, kTranslate };
+
+    Kind kind = Kind::kReflectX;  // a quarter turn: from the east to the north
+    Cell translation = {};        // for kTranslate
+    // Pieces and their images; see label_images() for those that are not named.
+    std::vector<std::pair<std::string, std::string>> mirror = {};
+
+    friend bool operator==(const Symmetry&, const Symmetry&) = default;
+};
+
+// Pieces are chosen so that the surroundings of each cell look like surroundings in the example
+// (2007 paper, Eq. 2-6).
+struct Resemblance {
+    std::int32_t window = 1;     // w: the surroundings reach so many cells in every direction
+    std::int32_t threshold = 0;  // how many more cells than in the best match may differ
+
+    friend bool operator==(const Resemblance&, const Resemblance&) = default;
+};
+
+// What a model should be like, as a number: its error, or how much there is of something.
+struct Term {
+    enum class Kind : std::uint8_t {
+        kDensity,        // share of the region's cells that hold one of the pieces
+        kCount,          // how many cells of the region do
+        kHeightProfile,  // the share on each floor of the region, against a profile
+        kShape,          // share of the model's cells that hold one, or none, against the region
+    };
+
+    Kind kind = Kind::kDensity;
+    double weight = 1;
+    std::vector<std::string> pieces = {};         // empty: all but the empty piece
+    std::optional<double> target = std::nullopt;  // of density and count; none: the more the better
+    std::vector<double> profile = {};             // from the bottom up, stretched over the model
+
+    friend bool operator==(const Term&, const Term&) = default;
+};
+
+// As requests name the terms, in the order of Term::Kind.
+inline constexpr std::array<const char*, 4> kTermNames = {
+    "density", "count", "height_profile", "shape"};
+
+// A block that makes the weighted sum of errors grow by d is kept with probability
+// exp(-d / temperature), another one always (2007 paper, 4.2, for f = exp(-sum / temperature)).
+struct Objective {
+    std::vector<Term> terms;
+    double temperature = 0;  // 0: no block is kept that makes it worse
+
+    friend bool operator==(const Objective&, const Objective&) = default;
+};
+
+// The best of n models by the weighted sum of errors.
+struct BestOf {
+    std::vector<Term> terms;
+    std::uint32_t n = 1;
+
+    friend bool operator==(const BestOf&, const BestOf&) = default;
+};
+
+using Rule = std::variant<
+    Fixed,
+    Forbidden,
+    Probability,
+    Count,
+    Separation,
+    MaxRun,
+    Connected,
+    Acyclic,
+    Path,
+    Symmetry,
+    Resemblance,
+    Objective,
+    BestOf>;
 
 // As requests name the rules, in the order of the alternatives of Rule.
 inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames = {
@@ -127,17 +200,33 @@ inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames =
     "max_run",
     "connected",
     "acyclic",
-    "path"};
+    "path",
+    "symmetry",
+    "resemblance",
+    "objective",
+    "best_of"};
 
 // Whether a rule speaks of the cells that hold its pieces together, not of each cell by itself.
 [[nodiscard]] inline bool is_member_rule(const Rule& rule) {
-    return !std::holds_alternative<Fixed>(rule) && !std::holds_alternative<Forbidden>(rule) &&
-           !std::holds_alternative<Probability>(rule);
+    return std::holds_alternative<Count>(rule) || std::holds_alternative<Separation>(rule) ||
+           std::holds_alternative<MaxRun>(rule) || std::holds_alternative<Connected>(rule) ||
+           std::holds_alternative<Acyclic>(rule) || std::holds_alternative<Path>(rule);
+}
+
+// Whether a rule is about some pieces, which it then names.
+[[nodiscard]] inline bool names_pieces(const Rule& rule) {
+    return is_member_rule(rule) || std::holds_alternative<Fixed>(rule) ||
+           std::holds_alternative<Forbidden>(rule) || std::holds_alternative<Probability>(rule);
+}
+
+// Whether it can be said where a rule holds.
+[[nodiscard]] inline bool has_region(const Rule& rule) {
+    return !std::holds_alternative<Resemblance>(rule);
 }
 
 struct Constraint {
     Rule rule;
-    std::vector<std::string> pieces;
+    std::vector<std::string> pieces = {};  // of rules that name some
     Region region = {};
 
     friend bool operator==(const Constraint&, const Constraint&) = default;

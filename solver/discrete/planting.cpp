@@ -1,7 +1,7 @@
 #include "solver/discrete/planting.h"
 
 #include "solver/discrete/constraint_reader.h"
-#include "solver/discrete/initial_model.h"
+#include "solver/discrete/search_keys.h"
 
 #include <algorithm>
 #include <memory>
@@ -12,8 +12,6 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// RandomKey::block of the places tried, from here on: more than any schedule has blocks.
-constexpr std::uint32_t kPlantKeys = 0x80000000;
 constexpr std::uint32_t kPurposePlace = 2;
 
 // Places tried in turn for one piece before that is given up.
@@ -28,7 +26,7 @@ class Planter {
   public:
     Planter(
         const Problem& problem,
-        BlockSearch<GridPart>& search,
+        BoxSearch& search,
         const GridSize& block,
         std::uint64_t seed,
         std::span<Label> model,
@@ -96,17 +94,14 @@ class Planter {
             if (is_member(rule, site, model_[site])) {
                 continue;
             }
-            const Box box = block_around(problem_.size.cell(site));
-            const GridPart part(problem_.size, problem_.periodic, box);
-            const std::vector<Site> scan = column_order(box.size());
             const Cell cell = problem_.size.cell(site);
-            const auto inside = static_cast<Site>(
-                box.size().index({cell.x - box.min.x, cell.y - box.min.y, cell.z - box.min.z})
+            const auto result = search_.modify(
+                block_around(cell),
+                model_,
+                {kPlantAttempts, Order::kScan, board.get(), BoxOptions::Pin{cell, &rule.labels}},
+                {seed_, key, 0, 0},
+                stop_
             );
-            BlockOptions options = {kPlantAttempts, Order::kScan, scan};
-            options.board = board.get();
-            options.pin = Pin{inside, &rule.labels};
-            const auto result = search_.modify(part, model_, options, {seed_, key, 0, 0}, stop_);
             if (result.outcome == BlockOutcome::kAccepted) {
                 return true;
             }
@@ -127,7 +122,7 @@ class Planter {
     }
 
     const Problem& problem_;
-    BlockSearch<GridPart>& search_;
+    BoxSearch& search_;
     GridSize block_;
     std::uint64_t seed_;
     std::span<Label> model_;
@@ -140,7 +135,7 @@ class Planter {
 
 bool plant_counts(
     const Problem& problem,
-    BlockSearch<GridPart>& search,
+    BoxSearch& search,
     const GridSize& block,
     std::uint64_t seed,
     std::span<Label> model,

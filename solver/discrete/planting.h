@@ -1,7 +1,6 @@
 #pragma once
 
-#include "solver/core/block_search.h"
-#include "solver/core/grid_topology.h"
+#include "solver/discrete/box_search.h"
 #include "solver/discrete/problem.h"
 
 #include <cstdint>
@@ -17,7 +16,7 @@ namespace modelsynth::discrete {
 // False:   some count is not reached; the model is as far as it came.
 [[nodiscard]] bool plant_counts(
     const Problem& problem,
-    BlockSearch<GridPart>& search,
+    BoxSearch& search,
     const GridSize& block,
     std::uint64_t seed,
     std::span<Label> model,

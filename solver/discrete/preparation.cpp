@@ -29,9 +29,9 @@ Preparation::Preparation(
 }
 
 Result<std::shared_ptr<Preparation>> Preparation::make(
-    std::shared_ptr<const Example> example, const Parameters& parameters
+    std::shared_ptr<const Example> example, const Parameters& parameters, const Origin* origin
 ) {
-    auto problem = make_problem(*example, parameters);
+    auto problem = make_problem(*example, parameters, origin);
     if (!problem) {
         return tl::unexpected(std::move(problem.error()));
     }
@@ -49,14 +49,14 @@ bool Preparation::can_change_middle(const GridSize& block) {
     const auto [west, east] = range(size.x, block.x);
     const auto [bottom, top] = range(size.y, block.y);
     const auto [north, south] = range(size.z, block.z);
-    const GridPart middle(size, problem_.periodic, Box{{west, bottom, north}, {east, top, south}});
     auto search = take_search();
-    const bool can_change = !search->is_determined(middle, *plain_model_, {});
+    const bool can_change =
+        !search->is_determined(Box{{west, bottom, north}, {east, top, south}}, *plain_model_, {});
     give_back(std::move(search));
     return can_change;
 }
 
-std::unique_ptr<Preparation::Search> Preparation::take_search() {
+std::unique_ptr<BoxSearch> Preparation::take_search() {
     {
         const std::lock_guard lock(mutex_);
         if (!searches_.empty()) {
@@ -65,12 +65,10 @@ std::unique_ptr<Preparation::Search> Preparation::take_search() {
             return search;
         }
     }
-    return std::make_unique<Search>(
-        problem_.relations, problem_.domains, problem_.weights, &bases_
-    );
+    return std::make_unique<BoxSearch>(problem_, &bases_);
 }
 
-void Preparation::give_back(std::unique_ptr<Search> search) {
+void Preparation::give_back(std::unique_ptr<BoxSearch> search) {
     const std::lock_guard lock(mutex_);
     if (search->largest_part() <= kKeptPartCellsMax && searches_.size() < kKeptSearchesMax) {
         searches_.push_back(std::move(search));

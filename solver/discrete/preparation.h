@@ -1,9 +1,7 @@
 #pragma once
 
-#include "solver/core/block_bases.h"
-#include "solver/core/block_search.h"
-#include "solver/core/grid_topology.h"
 #include "solver/core/result.h"
+#include "solver/discrete/box_search.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/problem.h"
@@ -24,12 +22,12 @@ namespace modelsynth::discrete {
 // Thread-safe.
 class Preparation {
   public:
-    using Search = BlockSearch<GridPart>;
-
     // Requires: defaults filled in and find_faults() empty (checked).
     // Fails:    as make_problem().
     [[nodiscard]] static Result<std::shared_ptr<Preparation>> make(
-        std::shared_ptr<const Example> example, const Parameters& parameters
+        std::shared_ptr<const Example> example,
+        const Parameters& parameters,
+        const Origin* origin = nullptr
     );
 
     Preparation(const Preparation&) = delete;
@@ -41,7 +39,8 @@ class Preparation {
 
     [[nodiscard]] const Problem& problem() const { return problem_; }
 
-    // See find_plain_model(); nothing either when the whole is made at once, or when it is rigid.
+    // See find_plain_model(); nothing either when the whole is made at once, when another model is
+    // started from, or when it is rigid.
     [[nodiscard]] const std::optional<std::vector<Label>>& plain_model() const {
         return plain_model_;
     }
@@ -51,8 +50,8 @@ class Preparation {
     [[nodiscard]] bool is_plain_model_rigid() const { return is_plain_model_rigid_; }
 
     // A search for one thread, given back at the end.
-    [[nodiscard]] std::unique_ptr<Search> take_search();
-    void give_back(std::unique_ptr<Search> search);
+    [[nodiscard]] std::unique_ptr<BoxSearch> take_search();
+    void give_back(std::unique_ptr<BoxSearch> search);
 
   private:
     Preparation(
@@ -67,15 +66,16 @@ class Preparation {
     Problem problem_;
     std::optional<std::vector<Label>> plain_model_;
     bool is_plain_model_rigid_ = false;
-    BlockBases<GridTopology> bases_;
+    BoxSearch::Bases bases_;
     std::mutex mutex_;
-    std::vector<std::unique_ptr<Search>> searches_;
+    std::vector<std::unique_ptr<BoxSearch>> searches_;
 };
 
 // The preparations of the requests that came last. Thread-safe.
 class PreparationCache {
   public:
-    // That of an equal request before, or a new one. An example is known by its address.
+    // That of an equal request before that started from nothing, or a new one. An example is known
+    // by its address.
     // Fails: as Preparation::make().
     [[nodiscard]] Result<std::shared_ptr<Preparation>> find_or_make(
         const std::shared_ptr<const Example>& example, const Parameters& parameters

@@ -3,6 +3,7 @@
 #include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/names.h"
+#include "solver/discrete/region.h"
 #include "solver/discrete/weight_tables.h"
 
 #include <algorithm>
@@ -65,22 +66,69 @@ std::vector<double> weights_of(const Example& example, const Weights& weights) {
 }
 
 // Fails when some site has no label left before any neighbour was asked.
-Result<void> check_domains(const SiteDomains& domains, const GridSize& size) {
-    for (std::size_t site = 0; site < domains.site_count(); ++site) {
-        if (!domains.at(static_cast<Site>(site)).empty()) {
+Result<void> check_domains(const Problem& problem) {
+    for (std::size_t site = 0; site < problem.domains.site_count(); ++site) {
+        if (!problem.domains.at(static_cast<Site>(site)).empty()) {
             continue;
         }
-        const Cell cell = size.cell(site);
-        const std::string sides = name_sides(size, cell);
+        const Cell cell = problem.size.cell(site);
+        const std::string sides = name_sides(problem.size, cell);
+        const bool is_kept = problem.start && problem.start->is_kept[site] != 0;
         return tl::unexpected(Error{
             ErrorCode::kContradiction,
             "no piece can stand at cell [" + std::to_string(cell.x) + ", " +
                 std::to_string(cell.y) + ", " + std::to_string(cell.z) + "]" +
                 (sides.empty() ? "" : ", on " + sides) +
-                ": what the boundary and the constraints allow there has nothing in common",
+                (is_kept ? ": the boundary and the constraints forbid what stands there in the "
+                           "model that this one starts from"
+                         : ": what the boundary and the constraints allow there has nothing in "
+                           "common"),
             {}});
     }
     return {};
+}
+
+LabelSet only(std::size_t label_count, Label label) {
+    LabelSet set(label_count);
+    set.insert(label);
+    return set;
+}
+
+// The model to start from, in its place; what it keeps is fixed.
+void keep_origin(const Origin& origin, std::size_t label_count, Problem& problem) {
+    const GridSize& size = problem.size;
+    const Box covered = {
+        origin.at,
+        {origin.at.x + origin.size.x, origin.at.y + origin.size.y, origin.at.z + origin.size.z}};
+    check(
+        size.contains(origin.at) && covered.max.x <= size.x && covered.max.y <= size.y &&
+            covered.max.z <= size.z && origin.labels.size() == origin.size.cell_count(),
+        "a model to start from that does not lie in the model to make"
+    );
+    const RegionCoverage remade(origin.remade, size);
+    const bool keeps_all_it_covers = remade.is_everywhere() && covered != Box::whole(size);
+    Start start = {
+        std::vector<Label>(size.cell_count(), kNoLabel),
+        std::vector<std::uint8_t>(size.cell_count())};
+    std::size_t next = 0;
+    for_each_cell(covered, [&](const Cell& cell) {
+        const std::size_t site = size.index(cell);
+        const Label label = origin.labels[next++];
+        start.labels[site] = label;
+        if (keeps_all_it_covers || !remade.contains(cell)) {
+            start.is_kept[site] = 1;
+            problem.domains.narrow(static_cast<Site>(site), only(label_count, label));
+        }
+    });
+    problem.start = std::move(start);
+}
+
+void narrow_to_images(Problem& problem) {
+    for (std::size_t site = 0; site < problem.size.cell_count(); ++site) {
+        problem.domains.narrow(
+            static_cast<Site>(site), problem.symmetries->allowed_at(static_cast<Site>(site))
+        );
+    }
 }
 
 }  // namespace
@@ -124,7 +172,9 @@ Relations find_transitions(const Example& example) {
     return relations;
 }
 
-Result<Problem> make_problem(const Example& example, const Parameters& parameters) {
+Result<Problem> make_problem(
+    const Example& example, const Parameters& parameters, const Origin* origin
+) {
     check(find_faults(example, parameters).empty(), "a problem was made of faulty parameters");
     const GridSize size = *parameters.size;
     const auto is_periodic = [&parameters](Direction side) {
@@ -140,7 +190,10 @@ Result<Problem> make_problem(const Example& example, const Parameters& parameter
         SiteDomains(size.cell_count(), usable_labels(example, weights)),
         SiteWeights(LabelWeights(weights)),
         {},
-        nullptr};
+        nullptr,
+        nullptr,
+        nullptr,
+        std::nullopt};
     const LabelOfName labels = labels_by_name(example);
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
         const SideBoundary& boundary = *parameters.boundary[side];
@@ -157,7 +210,14 @@ Result<Problem> make_problem(const Example& example, const Parameters& parameter
         return tl::unexpected(std::move(read.error()));
     }
     problem.weights = std::move(tables).finish();
-    if (auto fits = check_domains(problem.domains, size); !fits) {
+    if (problem.symmetries != nullptr) {
+        narrow_to_images(problem);
+    }
+    problem.chooser = make_chooser(example, parameters, problem);
+    if (origin != nullptr) {
+        keep_origin(*origin, example.pieces.size(), problem);
+    }
+    if (auto fits = check_domains(problem); !fits) {
         return tl::unexpected(std::move(fits.error()));
     }
     return problem;

@@ -1,18 +1,19 @@
 #pragma once
 
 #include "solver/core/grid_topology.h"
+#include "solver/core/label_chooser.h"
 #include "solver/core/relations.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
 #include "solver/discrete/example.h"
+#include "solver/discrete/origin.h"
 #include "solver/discrete/parameters.h"
+#include "solver/discrete/symmetries.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace modelsynth::discrete {
@@ -33,20 +34,32 @@ struct MemberRule {
     std::vector<std::uint8_t> applies;  // by cell; empty: everywhere
 };
 
+// The model that another one starts from, in the place that it has there.
+// Shape: by cell of the model to make.
+struct Start {
+    std::vector<Label> labels;          // kNoLabel: it has none there
+    std::vector<std::uint8_t> is_kept;  // the label stays
+};
+
 // A request as the search sees it.
 struct Problem {
     GridSize size;
     Periodic periodic;
     Relations relations;
-    SiteDomains domains;  // boundary, fixed and forbidden cells, removed pieces
+    SiteDomains domains;  // boundary, fixed and forbidden cells, removed pieces, what is kept
     SiteWeights weights;  // table 0: those without the constraints
     std::vector<MemberRule> member_rules;
     std::unique_ptr<const GridTopology> topology;  // of the whole, where a member rule needs it
+    std::unique_ptr<const Symmetries> symmetries;  // null: none
+    std::unique_ptr<const LabelChooser> chooser;   // null: labels are drawn by weight alone
+    std::optional<Start> start;
 };
 
-// Requires: find_faults() found nothing (checked).
+// Requires: find_faults() found nothing (checked); the origin, if any, lies in the model.
 // Fails:    kContradiction when some cell can take no piece at all; the message names the sides.
 //           kTooLarge for too many tables of weights.
-[[nodiscard]] Result<Problem> make_problem(const Example& example, const Parameters& parameters);
+[[nodiscard]] Result<Problem> make_problem(
+    const Example& example, const Parameters& parameters, const Origin* origin = nullptr
+);
 
 }  // namespace modelsynth::discrete

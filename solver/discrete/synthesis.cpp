@@ -1,17 +1,17 @@
 #include "solver/discrete/synthesis.h"
 
-#include "solver/core/block_queue.h"
 #include "solver/core/block_schedule.h"
-#include "solver/discrete/constraint_reader.h"
+#include "solver/discrete/best_of.h"
+#include "solver/discrete/block_solver.h"
+#include "solver/discrete/box_labels.h"
 #include "solver/discrete/initial_model.h"
+#include "solver/discrete/objective.h"
+#include "solver/discrete/parallel_blocks.h"
 
-#include <exception>
+#include <algorithm>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,77 +19,7 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// Blocks that wait to be reported while others are solved, and the most blocks for which the time
-// to find their dependencies, before the first one is solved, goes unnoticed.
-constexpr std::uint32_t kRunAheadMax = 512;
-constexpr std::size_t kParallelBlocksMax = 5'000;
-
 Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
-
-// Modifies blocks of one run; one per thread.
-class BlockSolver {
-  public:
-    BlockSolver(Preparation& preparation, std::uint64_t seed, const std::stop_token& stop)
-        : preparation_(preparation), seed_(seed), stop_(stop), search_(preparation.take_search()) {}
-
-    BlockSolver(const BlockSolver&) = delete;
-    BlockSolver& operator=(const BlockSolver&) = delete;
-
-    ~BlockSolver() { preparation_.give_back(std::move(search_)); }
-
-    [[nodiscard]] Preparation::Search& search() { return *search_; }
-
-    // The model stands as it is from now on, but for what modify() makes of it; it satisfies the
-    // member rules where it is complete.
-    void begin(std::span<const Label> labels) {
-        const Problem& problem = preparation_.problem();
-        if (!problem.member_rules.empty()) {
-            board_ = make_board(problem, problem.member_rules);
-            board_->start(labels);
-        }
-    }
-
-    BlockResult modify(
-        std::span<Label> labels, const Box& block, std::uint32_t index, std::uint32_t attempts
-    ) {
-        if (stop_.stop_requested()) {
-            return {BlockOutcome::kStopped};
-        }
-        const Problem& problem = preparation_.problem();
-        const GridPart part(problem.size, problem.periodic, block);
-        const GridSize shape = block.size();
-        if (shape != scan_shape_) {
-            scan_ = column_order(shape);
-            scan_shape_ = shape;
-        }
-        BlockOptions options = {attempts, preparation_.parameters().order, scan_};
-        options.board = board_.get();
-        return search_->modify(part, labels, options, {seed_, index, 0, 0}, stop_);
-    }
-
-  private:
-    Preparation& preparation_;
-    std::uint64_t seed_;
-    const std::stop_token& stop_;
-    std::unique_ptr<Preparation::Search> search_;
-    std::unique_ptr<ConstraintBoard> board_;  // null: the problem has no member rules
-    std::vector<Site> scan_;
-    GridSize scan_shape_;
-};
-
-void copy_out(
-    const GridSize& size, std::span<const Label> labels, const Box& box, std::vector<Label>& copy
-) {
-    copy.clear();
-    for_each_cell(box, [&](const Cell& cell) { copy.push_back(labels[size.index(cell)]); });
-}
-
-void copy_in(
-    const GridSize& size, std::span<const Label> copy, const Box& box, std::span<Label> labels
-) {
-    std::size_t i = 0;
-    for_each_cell(box, [&](const Cell& cell) { labels[size.index(cell)] = copy[i++]; });
-}
 
 // One run; the state that its steps share.
 class Run {
@@ -103,7 +33,8 @@ class Run {
           seed_(seed),
           observer_(observer),
           stop_(stop),
-          solver_(preparation, seed, stop) {}
+          solver_(preparation, seed, stop),
+          metropolis_(preparation.example(), preparation.parameters(), seed) {}
 
     Result<Synthesis> in_blocks(
         const Blocks& blocks, const Checkpoint* from, std::uint32_t threads
@@ -111,6 +42,9 @@ class Run {
         auto schedule = schedule_blocks(problem_.size, blocks.layout, kBlockCountMax);
         if (!schedule) {
             return tl::unexpected(std::move(schedule.error()));
+        }
+        if (problem_.start) {
+            std::erase_if(*schedule, [this](const Box& block) { return is_all_kept(block); });
         }
         const auto initial = find_initial_model(preparation_, solver_.search(), seed_, stop_);
         if (!initial) {
@@ -121,32 +55,23 @@ class Run {
             go_on_from(*from, schedule->size());
         }
         solver_.begin(labels_);
+        metropolis_.start(labels_);
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
         observer_.on_start(blocks_total_, labels_);
-        // Constraints on the whole make a block depend on all before it.
-        const bool in_parallel =
-            threads > 1 && schedule->size() <= kParallelBlocksMax && problem_.member_rules.empty();
-        if (!(in_parallel ? modify_in_parallel(*schedule, blocks.attempts, threads)
-                          : modify_in_turn(*schedule, blocks.attempts))) {
+        if (!modify_all(*schedule, blocks.attempts, threads)) {
             return tl::unexpected(cancelled());
         }
-        if (initial->is_searched) {
-            return finish(1);
-        }
-        std::size_t changed = 0;
-        for (std::size_t site = 0; site < labels_.size(); ++site) {
-            changed += std::size_t{labels_[site] != initial->labels[site]};
-        }
-        return finish(static_cast<double>(changed) / static_cast<double>(labels_.size()));
+        return finish(initial->is_searched ? 1 : changed_from(initial->labels));
     }
 
     Result<Synthesis> at_once(const Checkpoint* from) {
         labels_.assign(problem_.size.cell_count(), kNoLabel);
         blocks_total_ = 1;
+        const auto changed = [this] { return problem_.start ? changed_from({}) : 1; };
         if (from != nullptr && from->tally.accepted() > 0) {
             go_on_from(*from, blocks_total_);
             observer_.on_start(blocks_total_, labels_);
-            return finish(1);
+            return finish(changed());
         }
         observer_.on_start(blocks_total_, {});
         const Box whole = Box::whole(problem_.size);
@@ -155,7 +80,7 @@ class Run {
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
-                return finish(1);
+                return finish(changed());
             case BlockOutcome::kStopped:
                 return tl::unexpected(cancelled());
             case BlockOutcome::kImpossible:
@@ -182,102 +107,70 @@ class Run {
         stats_.blocks = from.tally;
     }
 
-    // False when it was stopped; so are those below.
+    [[nodiscard]] bool is_all_kept(const Box& block) const {
+        bool all = true;
+        for_each_cell(block, [&](const Cell& cell) {
+            all = all && problem_.start->is_kept[problem_.size.index(cell)] != 0;
+        });
+        return all;
+    }
+
+    // Share of sites that differ from the model that this one started from.
+    [[nodiscard]] double changed_from(std::span<const Label> initial) const {
+        const std::span<const Label> before = problem_.start ? problem_.start->labels : initial;
+        std::size_t changed = 0;
+        for (std::size_t site = 0; site < labels_.size(); ++site) {
+            changed += std::size_t{labels_[site] != before[site]};
+        }
+        return static_cast<double>(changed) / static_cast<double>(labels_.size());
+    }
+
+    // False when it was stopped; so is that below.
+    bool modify_all(std::span<const Box> schedule, std::uint32_t attempts, std::uint32_t threads) {
+        // What speaks of the whole makes a block depend on all before it.
+        const bool is_local = problem_.member_rules.empty() && problem_.symmetries == nullptr &&
+                              !metropolis_.is_asked_for();
+        if (threads <= 1 || !is_local) {
+            return modify_in_turn(schedule, attempts);
+        }
+        return modify_in_parallel(
+            preparation_,
+            solver_,
+            seed_,
+            {schedule, block_index_, attempts, threads},
+            labels_,
+            stop_,
+            [this](const Box& block, const BlockResult& result) { report(block, result); }
+        );
+    }
+
     bool modify_in_turn(std::span<const Box> schedule, std::uint32_t attempts) {
         for (const Box& block : schedule.subspan(block_index_)) {
-            const BlockResult result = solver_.modify(labels_, block, block_index_, attempts);
+            const Box touched = solver_.search().touched(block);
+            if (metropolis_.is_asked_for()) {
+                copy_out(problem_.size, labels_, touched, before_);
+            }
+            BlockResult result = solver_.modify(labels_, block, block_index_, attempts);
             if (result.outcome == BlockOutcome::kStopped) {
                 return false;
             }
-            check_possible(result);
-            report(block, result);
+            if (result.outcome == BlockOutcome::kAccepted && metropolis_.is_asked_for() &&
+                !metropolis_.keeps(block_index_, touched, before_, labels_)) {
+                copy_in(problem_.size, before_, touched, labels_);
+                solver_.take_back(labels_, block);
+                result.outcome = BlockOutcome::kReverted;
+                ++stats_.blocks.declined;
+            }
+            report(touched, result);
         }
         return true;
     }
 
-    // Blocks that do not touch are modified at the same time, in a copy of the model that is ahead
-    // of what was reported.
-    bool modify_in_parallel(
-        std::span<const Box> schedule, std::uint32_t attempts, std::uint32_t threads
-    ) {
-        struct Solved {
-            BlockResult result;
-            std::vector<Label> labels;  // of an accepted block
-        };
-
-        const BlockDependencies dependencies =
-            find_dependencies(problem_.size, problem_.periodic, schedule, block_index_);
-        BlockQueue queue(dependencies, block_index_, kRunAheadMax);
-        std::vector<Label> ahead = labels_;
-        // One more than run ahead: the oldest is being reported while the newest is solved.
-        std::vector<Solved> solved(kRunAheadMax + 1);
-        const auto solve = [&](BlockSolver& solver, std::uint32_t block) {
-            Solved& slot = solved[block % solved.size()];
-            slot.result = solver.modify(ahead, schedule[block], block, attempts);
-            if (slot.result.outcome == BlockOutcome::kStopped) {
-                queue.stop();
-                return;
-            }
-            check_possible(slot.result);
-            if (slot.result.outcome == BlockOutcome::kAccepted) {
-                copy_out(problem_.size, ahead, schedule[block], slot.labels);
-            }
-            queue.finish(block);
-        };
-        std::exception_ptr fault;
-        std::mutex fault_mutex;
-        const auto help = [&] {
-            try {
-                BlockSolver solver(preparation_, seed_, stop_);
-                while (const auto block = queue.take()) {
-                    solve(solver, *block);
-                }
-            } catch (...) {
-                const std::lock_guard lock(fault_mutex);
-                fault = std::current_exception();
-                queue.stop();
-            }
-        };
-        {
-            std::vector<std::jthread> helpers;
-            // However this ends, helpers are told before they are waited for.
-            const std::unique_ptr<BlockQueue, void (*)(BlockQueue*)> at_end(
-                &queue, [](BlockQueue* it) { it->stop(); }
-            );
-            for (std::uint32_t i = 1; i < threads; ++i) {
-                try {
-                    helpers.emplace_back(help);
-                } catch (const std::system_error&) {
-                    break;  // no more threads can be had
-                }
-            }
-            for (auto step = queue.next_step(); step.kind != BlockQueue::Step::Kind::kEnd;
-                 step = queue.next_step()) {
-                if (step.kind == BlockQueue::Step::Kind::kSolve) {
-                    solve(solver_, step.block);
-                    continue;
-                }
-                const Solved& slot = solved[step.block % solved.size()];
-                if (slot.result.outcome == BlockOutcome::kAccepted) {
-                    copy_in(problem_.size, slot.labels, schedule[step.block], labels_);
-                }
-                report(schedule[step.block], slot.result);
-            }
-        }
-        if (fault) {
-            std::rethrow_exception(fault);
-        }
-        return block_index_ == schedule.size();
-    }
-
-    static void check_possible(const BlockResult& result) {
+    void report(const Box& block, const BlockResult& result) {
         check(
             result.outcome != BlockOutcome::kImpossible,
             "a block of a consistent model was found impossible"
         );
-    }
-
-    void report(const Box& block, const BlockResult& result) {
         const bool accepted = result.outcome == BlockOutcome::kAccepted;
         SearchTally& tally = stats_.blocks;
         ++(accepted ? tally.solved_by[static_cast<std::size_t>(result.solved_by)] : tally.reverted);
@@ -290,6 +183,9 @@ class Run {
 
     Synthesis finish(double changed) {
         stats_.changed = changed;
+        if (metropolis_.is_asked_for()) {
+            stats_.objective = metropolis_.value();
+        }
         return {problem_.size, std::move(labels_), stats_};
     }
 
@@ -299,11 +195,43 @@ class Run {
     Observer& observer_;
     const std::stop_token& stop_;
     BlockSolver solver_;
+    Metropolis metropolis_;
+    std::vector<Label> before_;  // of the block in hand, where it may be taken back
     std::vector<Label> labels_;
     std::uint32_t block_index_ = 0;
     std::uint32_t blocks_total_ = 0;
     SynthesisStats stats_;
 };
+
+Result<Synthesis> make_one(
+    Preparation& preparation,
+    std::uint64_t seed,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from,
+    std::uint32_t threads
+) {
+    const auto& blocks = *preparation.parameters().blocks;
+    Run run(preparation, seed, observer, stop);
+    return blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
+}
+
+class NoObserver final : public Observer {
+  public:
+    void on_start(std::uint32_t /*blocks_total*/, std::span<const Label> /*model*/) override {}
+
+    void on_block(const BlockReport& /*report*/) override {}
+};
+
+// How many models the best is to be chosen from; 0: none is asked for.
+std::uint32_t candidates_asked_for(const Parameters& parameters) {
+    for (const Constraint& constraint : parameters.constraints) {
+        if (const auto* best = std::get_if<BestOf>(&constraint.rule)) {
+            return best->n;
+        }
+    }
+    return 0;
+}
 
 }  // namespace
 
@@ -315,9 +243,34 @@ Result<Synthesis> synthesise(
     const Checkpoint* from,
     std::uint32_t threads
 ) {
-    const auto& blocks = *preparation.parameters().blocks;
-    Run run(preparation, seed, observer, stop);
-    return blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
+    const std::uint32_t candidates = candidates_asked_for(preparation.parameters());
+    if (candidates == 0) {
+        return make_one(preparation, seed, observer, stop, from, threads);
+    }
+    auto best = find_best_seed(
+        preparation.example(),
+        preparation.parameters(),
+        candidates,
+        seed,
+        threads,
+        [&](std::uint64_t candidate) -> Result<std::vector<Label>> {
+            NoObserver nobody;
+            auto made = make_one(preparation, candidate, nobody, stop, nullptr, 1);
+            if (!made) {
+                return tl::unexpected(std::move(made.error()));
+            }
+            return std::move(made->labels);
+        }
+    );
+    if (!best) {
+        return tl::unexpected(std::move(best.error()));
+    }
+    auto made = make_one(preparation, best->seed, observer, stop, from, threads);
+    if (made) {
+        made->stats.objective = best->value;
+        made->stats.candidates = std::move(best->candidates);
+    }
+    return made;
 }
 
 Result<Synthesis> synthesise(

@@ -2,6 +2,7 @@
 
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
+#include "solver/core/synthesis_stats.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/preparation.h"
@@ -11,13 +12,6 @@
 #include <vector>
 
 namespace modelsynth::discrete {
-
-struct SynthesisStats {
-    SearchTally blocks;
-    // Share of cells whose label differs from the initial model; 1 where there was none, or one as
-    // varied as any.
-    double changed = 0;
-};
 
 struct Synthesis {
     GridSize size;
@@ -32,10 +26,11 @@ inline constexpr std::size_t kBlockCountMax = 1'000'000;
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
 // With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;
 // the result is that of a run without.
-// With several threads, blocks that do not touch are modified at the same time; the observer is
-// called on this one alone, in order, and nothing it sees is different.
-// Ensures:  equal arguments give equal labels and equal reports, on any machine.
-// Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
+// Where the best of several models is asked for, all are made first, unseen, and the best once
+// more. With several threads, blocks that do not touch are modified at the same time; the observer
+// is called on this one alone, in order, and nothing it sees is different. Ensures:  equal
+// arguments give equal labels and equal reports, on any machine. Fails:    kContradiction, kGaveUp,
+// kTooLarge, kCancelled when `stop` is requested: within one
 //           block and within one propagation.
 // Cost:     O(cells) blocks of constant size; memory: 4 bytes a cell and one block's catalog.
 [[nodiscard]] Result<Synthesis> synthesise(

@@ -66,8 +66,12 @@ Result<Finished> run(
     std::uint32_t threads
 ) {
     const auto& example = std::get<std::shared_ptr<const discrete::Example>>(task.example);
+    const discrete::Parameters& parameters = discrete_of(task.parameters);
+    // What starts from one model is of no use to the next request.
     const auto preparation =
-        preparations.discrete.find_or_make(example, discrete_of(task.parameters));
+        task.origin == nullptr
+            ? preparations.discrete.find_or_make(example, parameters)
+            : discrete::Preparation::make(example, parameters, task.origin.get());
     if (!preparation) {
         return tl::unexpected(preparation.error());
     }
@@ -75,8 +79,7 @@ Result<Finished> run(
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }
-    return Finished{
-        {made->size, std::move(made->labels)}, {made->stats.blocks, made->stats.changed}};
+    return Finished{{made->size, std::move(made->labels)}, std::move(made->stats)};
 }
 
 Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {

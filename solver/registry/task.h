@@ -3,6 +3,7 @@
 #include "solver/core/grid.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
+#include "solver/core/synthesis_stats.h"
 #include "solver/discrete/analysis/analysis.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/origin.h"
@@ -32,12 +33,6 @@ using Parameters = std::variant<discrete::Parameters>;
 struct Model {
     GridSize size;
     std::vector<Label> labels;  // x fastest, then z, then y
-};
-
-// What result.stats tells of a finished synthesis, beside the time it took.
-struct SynthesisStats {
-    SearchTally blocks;
-    double changed = 0;  // share of sites that differ from the initial model
 };
 
 struct Finished {

@@ -10,7 +10,7 @@
 
 #include "solver/core/block_search.h"
 #include "solver/core/result.h"
-#include "solver/discrete/initial_model.h"
+#include "solver/discrete/scan_order.h"
 
 #include <algorithm>
 #include <limits>

@@ -123,10 +123,58 @@ class CaseMaker {
             case 7:
                 made.rule = Acyclic{};
                 break;
-            default:
+            case 8:
                 made.region = {};
                 made.rule = Path{cell(size), cell(size)};
                 break;
+            case 9:
+                made.rule = symmetry(example);
+                break;
+            case 10:
+                made.region = {};
+                made.rule = Resemblance{1 + below(2), below(3)};
+                break;
+            case 11:
+                made.rule = Objective{terms(example, size), below(3) * 0.1};
+                break;
+            default:
+                made.rule = BestOf{terms(example, size), static_cast<std::uint32_t>(1 + below(4))};
+                break;
+        }
+        if (!names_pieces(made.rule)) {
+            made.pieces.clear();
+        }
+        return made;
+    }
+
+    Symmetry symmetry(const Example& example) {
+        constexpr std::array<Symmetry::Kind, 5> kMoves = {
+            Symmetry::Kind::kReflectX,
+            Symmetry::Kind::kReflectZ,
+            Symmetry::Kind::kHalfTurn,
+            Symmetry::Kind::kQuarterTurn,
+            Symmetry::Kind::kTranslate};
+        Symmetry made = {kMoves.at(static_cast<std::size_t>(below(5)))};
+        made.translation = {1 + below(4), below(2), below(4) - 2};
+        if (below(2) == 0 && example.pieces.size() > 1) {
+            made.mirror = {{example.pieces[0].name, example.pieces[1].name}};
+        }
+        return made;
+    }
+
+    std::vector<Term> terms(const Example& example, const GridSize& size) {
+        std::vector<Term> made;
+        for (std::int32_t i = 0; i <= below(3); ++i) {
+            Term term = {below(2) == 0 ? Term::Kind::kDensity : Term::Kind::kCount};
+            term.weight = below(5) - 2;
+            term.pieces = {example.pieces[0].name};
+            if (below(2) == 0) {
+                term.target = term.kind == Term::Kind::kDensity ? 0.5 : size.x;
+            }
+            if (below(4) == 0) {
+                term = {Term::Kind::kHeightProfile, 1, {}, std::nullopt, {0.9, 0.1}};
+            }
+            made.push_back(term);
         }
         return made;
     }
@@ -138,7 +186,10 @@ class CaseMaker {
         Blocks blocks;
         blocks.layout.size = {2 + below(7), 1 + below(5), 2 + below(7)};
         blocks.layout.passes = static_cast<std::uint32_t>(1 + below(2));
-        if (below(3) > 0) {
+        if (kind == kSymmetryKind) {
+            parameters.size->z = parameters.size->x;  // so that it can be turned
+        }
+        if (below(3) > 0 || kind == kObjectiveKind) {
             parameters.blocks = blocks;
         } else {
             parameters.blocks = std::optional<Blocks>();
@@ -166,6 +217,8 @@ class CaseMaker {
     }
 
     static constexpr std::int32_t kKinds = std::variant_size_v<Rule>;
+    static constexpr std::size_t kSymmetryKind = 9;
+    static constexpr std::size_t kObjectiveKind = 11;
 
   private:
     RandomStream random_;

@@ -12,6 +12,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace modelsynth::testing {
@@ -298,6 +300,96 @@ class ConstraintOracle {
         };
         const auto from = piece_at(rule.from);
         return from && from == piece_at(rule.to) ? Fault() : "there is no path";
+    }
+
+    // Where the cell comes to lie; nothing beyond the model.
+    [[nodiscard]] std::optional<Cell> moved(
+        const discrete::Symmetry& rule, const discrete::Region& region, const Cell& cell
+    ) const {
+        using Kind = discrete::Symmetry::Kind;
+        const bool in_box = region.box && region.cells.empty() && !region.mask && !region.voxels;
+        const Box about = in_box ? *region.box : Box{{0, 0, 0}, {size_.x, size_.y, size_.z}};
+        // Twice the way from the middle.
+        const int dx = 2 * cell.x + 1 - about.min.x - about.max.x;
+        const int dz = 2 * cell.z + 1 - about.min.z - about.max.z;
+        const auto at = [&](int to_x, int to_z) {
+            return Cell{
+                (to_x - 1 + about.min.x + about.max.x) / 2,
+                cell.y,
+                (to_z - 1 + about.min.z + about.max.z) / 2};
+        };
+        Cell to = cell;
+        switch (rule.kind) {
+            case Kind::kReflectX:
+                to = at(-dx, dz);
+                break;
+            case Kind::kReflectZ:
+                to = at(dx, -dz);
+                break;
+            case Kind::kHalfTurn:
+                to = at(-dx, -dz);
+                break;
+            case Kind::kQuarterTurn:
+                to = at(dz, -dx);
+                break;
+            case Kind::kTranslate: {
+                const auto along = [](int from, int step, int extent, bool periodic) {
+                    const int there = from + step;
+                    return periodic ? (there % extent + extent) % extent : there;
+                };
+                to = {
+                    along(cell.x, rule.translation.x, size_.x, periodic_[0]),
+                    along(cell.y, rule.translation.y, size_.y, periodic_[1]),
+                    along(cell.z, rule.translation.z, size_.z, periodic_[2])};
+                break;
+            }
+        }
+        return size_.contains(to) ? std::optional(to) : std::nullopt;
+    }
+
+    // Requires: a mirror of pairs, each named once.
+    Fault check(
+        const discrete::Symmetry& rule,
+        const discrete::Constraint& constraint,
+        const Members& /*members*/
+    ) const {
+        const auto& region = constraint.region;
+        const GridSize about = region.box ? region.box->size() : size_;
+        if (rule.kind == discrete::Symmetry::Kind::kQuarterTurn && about.x != about.z) {
+            return "nothing square to turn";
+        }
+        const auto name_at = [&](const Cell& cell) {
+            return example_
+                .pieces[labels_[static_cast<
+                    std::size_t>(cell.x + size_.x * (cell.z + size_.z * cell.y))]]
+                .name;
+        };
+        const auto image_of = [&](const std::string& name) {
+            for (const auto& [a, b] : rule.mirror) {
+                if (name == a || name == b) {
+                    return name == a ? b : a;
+                }
+            }
+            return name;
+        };
+        Fault fault;
+        for_each([&](const Cell& cell) {
+            const auto to = moved(rule, region, cell);
+            if (to && value_at(region, cell) >= 0.5 && value_at(region, *to) >= 0.5 &&
+                name_at(*to) != image_of(name_at(cell))) {
+                fault = "a cell is not its image's image";
+            }
+        });
+        return fault;
+    }
+
+    // What these ask for is no yes or no.
+    template <class Wish>
+    Fault check(
+        const Wish& /*rule*/, const discrete::Constraint& /*constraint*/, const Members& /*members*/
+    ) const {
+        static_assert(std::is_same_v<Wish, discrete::Resemblance> || std::is_same_v<Wish, discrete::Objective> || std::is_same_v<Wish, discrete::BestOf>);
+        return {};
     }
 
     const discrete::Example& example_;

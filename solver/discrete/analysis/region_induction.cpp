@@ -9,7 +9,7 @@
 #include "solver/core/catalog.h"
 #include "solver/core/grid_topology.h"
 #include "solver/core/result.h"
-#include "solver/discrete/initial_model.h"
+#include "solver/discrete/scan_order.h"
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,8 @@
 #include "solver/core/grid_topology.h"
 #include "solver/core/random.h"
 #include "solver/core/search.h"
-#include "solver/discrete/initial_model.h"
 #include "solver/discrete/problem.h"
+#include "solver/discrete/scan_order.h"
 
 #include <algorithm>
 #include <numeric>
@@ -58,7 +58,7 @@ class Runs {
         RandomStream random(key);
         const PartWeights weights = {problem_.weights, {}};  // there are no constraints
         const auto with = [&](auto picker) {
-            return Search(catalog_, picker, weights, nullptr, random, stop_).run({0});
+            return Search(catalog_, picker, weights, {}, random, stop_).run({0});
         };
         switch (order_) {
             case Order::kScan:

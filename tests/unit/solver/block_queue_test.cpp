@@ -5,50 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <set>
-#include <span>
-#include <utility>
+#include <thread>
 #include <vector>
 
 namespace modelsynth {
 namespace {
-
-using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
-
-Pairs pairs_of(const BlockDependencies& dependencies) {
-    Pairs pairs;
-    std::vector<std::uint32_t> waits(dependencies.waits_for.size());
-    for (std::uint32_t block = 0; block < waits.size(); ++block) {
-        for (std::uint32_t i = dependencies.first_dependent[block];
-             i < dependencies.first_dependent[block + 1];
-             ++i) {
-            EXPECT_TRUE(pairs.insert({block, dependencies.dependents[i]}).second);
-            ++waits[dependencies.dependents[i]];
-        }
-    }
-    EXPECT_EQ(waits, dependencies.waits_for);
-    return pairs;
-}
-
-// waits[a][b]: block a waits for b, or for one that does.
-std::vector<std::vector<bool>> all_waits(const Pairs& pairs, std::uint32_t count) {
-    std::vector<std::vector<std::uint32_t>> direct(count);
-    for (const auto& [earlier, later] : pairs) {
-        direct[later].push_back(earlier);
-    }
-    std::vector<std::vector<bool>> waits(count, std::vector<bool>(count));
-    for (std::uint32_t block = 0; block < count; ++block) {
-        for (const std::uint32_t earlier : direct[block]) {
-            waits[block][earlier] = true;
-            for (std::uint32_t i = 0; i < earlier; ++i) {
-                waits[block][i] = waits[block][i] || waits[earlier][i];
-            }
-        }
-    }
-    return waits;
-}
 
 // Cells of the model that the block changes or reads.
 std::set<std::size_t> touched(const GridSize& model, Periodic periodic, const Box& block) {
@@ -74,59 +39,103 @@ std::set<std::size_t> touched(const GridSize& model, Periodic periodic, const Bo
     return cells;
 }
 
-TEST(BlockDependencies, HoldEveryPairOfWhichOneReadsOrChangesWhatTheOtherChanges) {
+bool meets(const std::set<std::size_t>& a, const std::set<std::size_t>& b) {
+    return std::any_of(a.begin(), a.end(), [&](std::size_t cell) { return b.contains(cell); });
+}
+
+TEST(BlockQueue, HandsABlockOutOnlyWhenNoEarlierOneThatItReadsIsUnfinished) {
     const std::vector<GridSize> models = {{13, 3, 17}, {20, 9, 8}, {6, 6, 6}, {9, 1, 30}};
     for (const GridSize& model : models) {
         for (const Periodic periodic :
              {Periodic{}, Periodic{true, false, true}, {true, true, true}}) {
-            for (const double overlap : {0.0, 0.4, 0.7}) {
-                const auto blocks =
-                    schedule_blocks(model, {{5, 3, 4}, overlap, 3}, 100'000).value();
-                const auto first = static_cast<std::uint32_t>(blocks.size() / 3);
-                const Pairs pairs = pairs_of(find_dependencies(model, periodic, blocks, first));
-                std::vector<std::set<std::size_t>> changed;
-                std::vector<std::set<std::size_t>> read;
-                for (const Box& block : blocks) {
-                    read.push_back(touched(model, periodic, block));
-                    changed.emplace_back();
-                    for_each_cell(block, [&](const Cell& cell) {
-                        changed.back().insert(model.index(cell));
+            const auto blocks = schedule_blocks(model, {{5, 3, 4}, 0.4, 3}, 100'000).value();
+            const auto first = static_cast<std::uint32_t>(blocks.size() / 3);
+            std::vector<std::set<std::size_t>> changed;
+            std::vector<std::set<std::size_t>> read;
+            for (const Box& block : blocks) {
+                read.push_back(touched(model, periodic, block));
+                changed.emplace_back();
+                for_each_cell(block, [&](const Cell& cell) {
+                    changed.back().insert(model.index(cell));
+                });
+            }
+            BlockQueue queue(model, periodic, blocks, first, 40);
+            std::mutex mutex;
+            std::vector<bool> finished(blocks.size());
+            const auto is_free = [&](std::uint32_t block) {
+                const std::lock_guard lock(mutex);
+                for (std::uint32_t earlier = first; earlier < block; ++earlier) {
+                    if (!finished[earlier] && meets(changed[earlier], read[block])) {
+                        return false;
+                    }
+                }
+                return true;
+            };
+            const auto solve = [&](std::uint32_t block) {
+                EXPECT_TRUE(is_free(block)) << block;
+                {
+                    const std::lock_guard lock(mutex);
+                    finished[block] = true;
+                }
+                queue.finish(block);
+            };
+            std::uint32_t reported = first;
+            {
+                std::vector<std::jthread> helpers;
+                for (int i = 0; i < 3; ++i) {
+                    helpers.emplace_back([&] {
+                        while (const auto block = queue.take()) {
+                            solve(*block);
+                        }
                     });
                 }
-                for (const auto& [earlier, later] : pairs) {
-                    EXPECT_GE(earlier, first);
-                    EXPECT_LT(earlier, later);
-                }
-                const auto waits = all_waits(pairs, static_cast<std::uint32_t>(blocks.size()));
-                for (std::uint32_t later = first; later < blocks.size(); ++later) {
-                    for (std::uint32_t earlier = first; earlier < later; ++earlier) {
-                        const bool must = std::any_of(
-                            changed[earlier].begin(),
-                            changed[earlier].end(),
-                            [&](std::size_t cell) { return read[later].contains(cell); }
-                        );
-                        ASSERT_TRUE(!must || waits[later][earlier]) << earlier << ' ' << later;
+                for (auto step = queue.next_step(); step.kind != BlockQueue::Step::Kind::kEnd;
+                     step = queue.next_step()) {
+                    if (step.kind == BlockQueue::Step::Kind::kSolve) {
+                        solve(step.block);
+                    } else {
+                        EXPECT_EQ(step.block, reported++);
+                        EXPECT_TRUE(finished[step.block]);
                     }
                 }
             }
+            EXPECT_EQ(reported, blocks.size());
         }
     }
 }
 
-TEST(BlockDependencies, LeaveDistantBlocksFree) {
-    const auto blocks = schedule_blocks({100, 10, 100}, {}, 1000).value();
-    const BlockDependencies dependencies = find_dependencies({100, 10, 100}, {}, blocks, 0);
-    // Two rows before and two places in its own row, of five by five around a block.
-    EXPECT_EQ(*std::max_element(dependencies.waits_for.begin(), dependencies.waits_for.end()), 12U);
+TEST(BlocksMeet, WhenTheyOverlapOrTouchAlsoAcrossASeam) {
+    const GridSize model = {12, 4, 12};
+    const Box west = {{0, 0, 0}, {4, 4, 4}};
+    const Box next = {{4, 0, 0}, {8, 4, 4}};
+    const Box east = {{8, 0, 0}, {12, 4, 4}};
+    const Box apart = {{5, 0, 5}, {8, 4, 9}};
+    EXPECT_TRUE(blocks_meet(west, next, model, {}));
+    EXPECT_FALSE(blocks_meet(west, east, model, {}));
+    EXPECT_TRUE(blocks_meet(west, east, model, {true, false, false}));
+    EXPECT_FALSE(blocks_meet(west, apart, model, {}));
 }
 
-// Blocks 0 and 1 are free, 2 waits for 1, 3 for 0 and 2.
-BlockDependencies four_blocks() { return {{0, 0, 1, 2}, {0, 1, 2, 3, 3}, {3, 2, 3}}; }
+// A row of blocks side by side: each waits for the one before it.
+std::vector<Box> row(std::int32_t count, std::int32_t gap) {
+    std::vector<Box> blocks;
+    for (std::int32_t i = 0; i < count; ++i) {
+        blocks.push_back({{i * (1 + gap), 0, 0}, {i * (1 + gap) + 1, 1, 1}});
+    }
+    return blocks;
+}
+
+constexpr GridSize kRowSize = {100, 1, 1};
 
 TEST(BlockQueue, HandsBlocksOutWhenTheyMayStartAndReportsThemInOrder) {
     using Kind = BlockQueue::Step::Kind;
-    const BlockDependencies dependencies = four_blocks();
-    BlockQueue queue(dependencies, 0, 10);
+    // Blocks 0 and 1 are free, 2 meets 1, 3 meets 0 and 2.
+    const std::vector<Box> blocks = {
+        {{0, 0, 0}, {4, 1, 1}},
+        {{20, 0, 0}, {24, 1, 1}},
+        {{24, 0, 0}, {30, 1, 1}},
+        {{4, 0, 0}, {27, 1, 1}}};
+    BlockQueue queue(kRowSize, {}, blocks, 0, 10);
     EXPECT_EQ(queue.take(), 0U);
     EXPECT_EQ(queue.take(), 1U);
     queue.finish(1);
@@ -148,8 +157,8 @@ TEST(BlockQueue, HandsBlocksOutWhenTheyMayStartAndReportsThemInOrder) {
 }
 
 TEST(BlockQueue, RunsAheadOfTheReportsNoFurtherThanAllowed) {
-    const BlockDependencies dependencies = {{0, 0, 0}, {0, 0, 0, 0}, {}};
-    BlockQueue queue(dependencies, 0, 2);
+    const std::vector<Box> blocks = row(3, 2);
+    BlockQueue queue(kRowSize, {}, blocks, 0, 2);
     EXPECT_EQ(queue.take(), 0U);
     EXPECT_EQ(queue.take(), 1U);
     queue.finish(1);
@@ -159,9 +168,8 @@ TEST(BlockQueue, RunsAheadOfTheReportsNoFurtherThanAllowed) {
 }
 
 TEST(BlockQueue, GoesOnAfterTheBlocksThatAreDone) {
-    const auto blocks = schedule_blocks({40, 10, 10}, {}, 100).value();
-    const BlockDependencies dependencies = find_dependencies({40, 10, 10}, {}, blocks, 3);
-    BlockQueue queue(dependencies, 3, 10);
+    const std::vector<Box> blocks = row(9, 0);
+    BlockQueue queue(kRowSize, {}, blocks, 3, 10);
     for (std::uint32_t block = 3; block < blocks.size(); ++block) {
         EXPECT_EQ(queue.take(), block);
         queue.finish(block);
@@ -171,8 +179,8 @@ TEST(BlockQueue, GoesOnAfterTheBlocksThatAreDone) {
 }
 
 TEST(BlockQueue, HandsNothingOutOnceStopped) {
-    const BlockDependencies dependencies = four_blocks();
-    BlockQueue queue(dependencies, 0, 10);
+    const std::vector<Box> blocks = row(4, 2);
+    BlockQueue queue(kRowSize, {}, blocks, 0, 10);
     queue.stop();
     EXPECT_EQ(queue.take(), std::nullopt);
     EXPECT_EQ(queue.next_step().kind, BlockQueue::Step::Kind::kEnd);

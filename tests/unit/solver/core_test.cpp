@@ -19,12 +19,11 @@
 namespace modelsynth {
 namespace {
 
-using testing::GraphTopology;
 using testing::make_colouring;
-using testing::WholeGraph;
+using testing::whole_graph;
 
 static_assert(Topology<GridTopology> && Topology<GraphTopology>);
-static_assert(TopologyPart<GridPart> && TopologyPart<WholeGraph>);
+static_assert(TopologyPart<GridPart> && TopologyPart<GraphPart>);
 
 TEST(Philox, MatchesThePublishedVectors) {
     // kat_vectors of Random123 for philox4x32-10.
@@ -170,13 +169,14 @@ TEST(Schedule, CoversEveryCellAndEndsWithTheModel) {
 
 TEST(BlockSearch, ColoursAGeneralGraph) {
     // The Petersen graph needs three colours.
-    GraphTopology graph(10);
+    std::vector<GraphArc> arcs;
     for (Site i = 0; i < 5; ++i) {
-        graph.join(i, (i + 1) % 5, 0, 0);
-        graph.join(i, i + 5, 0, 0);
-        graph.join(i + 5, (i + 2) % 5 + 5, 0, 0);
+        arcs.push_back({i, (i + 1) % 5, 0, 0});
+        arcs.push_back({i, i + 5, 0, 0});
+        arcs.push_back({i + 5, (i + 2) % 5 + 5, 0, 0});
     }
-    const WholeGraph part(graph);
+    const GraphTopology graph(10, arcs);
+    const GraphPart part = whole_graph(graph);
     const Relations relations = make_colouring(3);
     const SiteDomains domains(10, LabelSet::all(3));
     const std::array<double, 3> given = {1, 1, 1};
@@ -184,7 +184,7 @@ TEST(BlockSearch, ColoursAGeneralGraph) {
     std::vector<Label> labels(10, kNoLabel);
     std::vector<Site> scan(10);
     std::iota(scan.begin(), scan.end(), Site{0});
-    BlockSearch<WholeGraph> search(relations, domains, weights);
+    BlockSearch<GraphPart> search(relations, domains, weights);
     for (const Order order : {Order::kScan, Order::kMinEntropy, Order::kRandom}) {
         const BlockResult result =
             search.modify(part, std::span<Label>(labels), {50, order, scan}, {3, 0, 0, 0}, {});
@@ -198,10 +198,8 @@ TEST(BlockSearch, ColoursAGeneralGraph) {
 }
 
 TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
-    GraphTopology graph(3);
-    graph.join(0, 1, 0, 0);
-    graph.join(1, 2, 0, 0);
-    graph.join(2, 0, 0, 0);
+    const std::array<GraphArc, 3> arcs = {{{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 0, 0, 0}}};
+    const GraphTopology graph(3, arcs);
     const Relations relations = make_colouring(2);
     SiteDomains domains(3, LabelSet::all(2));
     LabelSet first(2);
@@ -212,8 +210,8 @@ TEST(BlockSearch, ProvesThatATriangleHasNoTwoColoursOnceOneIsFixed) {
     const std::vector<Site> scan = {0, 1, 2};
     const SiteWeights weights{LabelWeights(given)};
     const BlockResult result =
-        BlockSearch<WholeGraph>(relations, domains, weights)
-            .modify(WholeGraph(graph), std::span<Label>(labels), {5, Order::kScan, scan}, {}, {});
+        BlockSearch<GraphPart>(relations, domains, weights)
+            .modify(whole_graph(graph), std::span<Label>(labels), {5, Order::kScan, scan}, {}, {});
     EXPECT_EQ(result.outcome, BlockOutcome::kImpossible);
     EXPECT_EQ(labels, (std::vector<Label>{1, 1, 1}));  // as it was
 }

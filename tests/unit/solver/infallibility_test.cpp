@@ -6,7 +6,7 @@
 #include "solver/core/random.h"
 #include "solver/discrete/analysis/corner_condition.h"
 #include "solver/discrete/analysis/region_induction.h"
-#include "solver/discrete/initial_model.h"
+#include "solver/discrete/scan_order.h"
 #include "tests/support/examples.h"
 #include "tests/support/naive_grid.h"
 

@@ -15,8 +15,6 @@
 namespace modelsynth {
 namespace {
 
-using testing::GraphTopology;
-
 // Three colours for random graphs of about as many edges as still allow it: propagation alone
 // sees little, and most early choices are found wrong late.
 constexpr std::size_t kLabels = 3;
@@ -27,13 +25,13 @@ using GraphCatalog = Catalog<GraphTopology, 1>;
 
 GraphTopology random_graph(std::uint64_t seed) {
     RandomStream random({seed, 0, 0, 1});
-    GraphTopology graph(kSites);
+    std::vector<GraphArc> arcs;
     for (std::size_t edge = 0; edge < kEdges; ++edge) {
         const auto a = static_cast<Site>(random.below(kSites));
         const auto b = static_cast<Site>((a + 1 + random.below(kSites - 1)) % kSites);
-        graph.join(a, b, 0, 0);
+        arcs.push_back({a, b, 0, 0});
     }
-    return graph;
+    return {kSites, arcs};
 }
 
 bool fits(const GraphTopology& graph, const std::vector<Label>& labels, Site site) {
@@ -79,7 +77,7 @@ Result search(
     catalog.enqueue_all();
     EXPECT_EQ(catalog.propagate({}), Propagation::kConsistent);
     auto picker = make_picker(catalog, weights, random);
-    Search search(catalog, picker, weights, nullptr, random, {});
+    Search search(catalog, picker, weights, {}, random, {});
     Result result = {search.run({budget}), {}, search.backtracks()};
     if (result.outcome == SearchOutcome::kSolved) {
         for (Site site = 0; site < kSites; ++site) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "solver/core/search_tally.h"
+
+#include <optional>
+#include <vector>
+
+namespace modelsynth {
+
+// What is told of a finished synthesis.
+struct SynthesisStats {
+    SearchTally blocks;
+    // Share of sites whose label differs from the model that the synthesis started from; 1 where
+    // there was none, or one as varied as any.
+    double changed = 0;
+    // Where something is to be made small: what it came to, ...
+    std::optional<double> objective = std::nullopt;
+    // ... and in each of the models that the best was chosen from; nothing for one that failed.
+    std::vector<std::optional<double>> candidates = {};
+};
+
+}  // namespace modelsynth
