@@ -302,6 +302,24 @@ TEST(Infallibility, TheOrderOfItsProofsIsTheOrderOfTheSearch) {
     }
 }
 
+TEST(Infallibility, TheQuickQuestionIsAnsweredYesOnlyWhereTheVerdictIsInfallible) {
+    std::size_t proved = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        Example example = make_tiny_example(seed, seed % 4 < 2);
+        if (!is_proved_infallible(example)) {
+            continue;
+        }
+        ++proved;
+        EXPECT_EQ(verdict_of(example, 100'000).kind, Infallibility::kInfallible) << seed;
+        // It speaks of free sides alone.
+        example.boundary[seed % kDirectionCount].kind = BoundaryKind::kPeriodic;
+        EXPECT_FALSE(is_proved_infallible(example));
+    }
+    EXPECT_GT(proved, 100U);
+    EXPECT_TRUE(is_proved_infallible(make_example({2, 1, 2}, {0, 0, 0, 0}, 1)));
+    EXPECT_FALSE(is_proved_infallible(make_example({2, 1, 2}, {0, 0, 0, 0}, 1), 0));
+}
+
 TEST(Counterexample, IsToldWithTheNamesOfPieces) {
     const Example example = testing::make_pillars();
     const std::vector<PlacedLabel> core = {{{0, 0, 0}, 1}, {{0, 0, 1}, 2}};
