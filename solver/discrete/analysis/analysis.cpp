@@ -13,6 +13,7 @@ namespace {
 // it.
 constexpr std::uint64_t kVerdictSteps = 300'000;
 constexpr std::uint64_t kSplittingSteps = 15'000;
+constexpr std::size_t kSplitLabelsMax = 512;  // beyond, memory would count too
 constexpr std::uint64_t kPlacements = 5'000;
 constexpr std::uint64_t kSuccessCells = 2'000'000;
 constexpr std::uint64_t kCountSteps = 500'000;
@@ -51,7 +52,7 @@ Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {
         return tl::unexpected(std::move(verdict.error()));
     }
     std::optional<Splitting> splitting;
-    if (verdict->kind != Infallibility::kInfallible) {
+    if (verdict->kind != Infallibility::kInfallible && example.pieces.size() <= kSplitLabelsMax) {
         auto found =
             find_splitting(example, transitions, splitting_options(share(kSplittingSteps)), stop);
         if (!found) {

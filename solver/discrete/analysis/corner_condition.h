@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/core/label_set.h"
 #include "solver/discrete/analysis/transitions.h"
 #include "solver/discrete/analysis/work.h"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "solver/core/label_set.h"
 #include "solver/discrete/analysis/split_labels.h"
 #include "solver/discrete/analysis/work.h"
 

@@ -42,8 +42,8 @@ struct Splitting {
 
 struct SplittingOptions {
     std::uint64_t steps_max = 1'000'000;  // of work; about a microsecond each
-    // New labels on the way, at most, for each label of the example, and besides; merging comes
-    // after.
+    // New labels on the way, at most, for each label of the example (at least 1), and besides;
+    // merging comes after.
     std::size_t labels_per_label = 8;
     std::size_t labels_more = 32;
     // For one proof by the smallest region, tried in merging where Eq. 3.11 does not hold.
@@ -53,6 +53,8 @@ struct SplittingOptions {
 // Splits by rules, and by cells where that fails, along the axes in either order; merges back; the
 // best is the one with the fewest labels lost, then the fewest labels. Nothing where none was
 // found, where the example has no models that go on, or has neighbours along fewer than two axes.
+// Many examples have none that this finds: those whose labels stand for things that any number of
+// cells lie between are split without end by rules, and by cells until no label has room to repeat.
 // Of an example that is infallible itself, it may be told that nothing is to be split.
 // Requires: `transitions` read from the example.
 // Ensures:  deterministic in its arguments.

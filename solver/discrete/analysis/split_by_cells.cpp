@@ -4,6 +4,8 @@
 #include "solver/discrete/analysis/split_by_rules.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace modelsynth::discrete {

@@ -1,6 +1,7 @@
 #include "solver/discrete/analysis/split_by_rules.h"
 
 #include <optional>
+#include <utility>
 
 namespace modelsynth::discrete {
 
