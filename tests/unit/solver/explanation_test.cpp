@@ -1,6 +1,7 @@
 // What is said of failures, checked by trying everything on random tiny requests.
 
 #include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/support/consistency_checker.h"
@@ -359,6 +360,79 @@ TEST(Explanation, OfMemberRulesNamesThem) {
     }
 }
 
+// Any of a and b beside any.
+Example make_any() {
+    Example any = make_example({2, 1, 2}, {0, 1, 1, 0}, 2);
+    for (const std::uint8_t axis : {std::uint8_t{0}, std::uint8_t{2}}) {
+        for (const Label label : {Label{0}, Label{1}}) {
+            any.adjacency.push_back({axis, label, label});
+        }
+    }
+    return any;
+}
+
+// Of as many cells as there are, one fewer may hold what is fixed in all of them.
+Result<Synthesis> make_one_too_many(std::int32_t cells) {
+    Parameters parameters;
+    parameters.size = GridSize{cells, 1, 2};
+    Constraint fixed = {Fixed{}, {"b"}};
+    fixed.region.box = Box{{0, 0, 0}, {cells, 1, 1}};
+    parameters.constraints = {fixed, {Count{0, static_cast<std::uint32_t>(cells - 1)}, {"b"}}};
+    return make(make_any(), fill_defaults(parameters, make_any()), 1);
+}
+
+TEST(Explanation, TellsThirtyTwoCellsAtMost) {
+    const Error few = make_one_too_many(32).error();
+    EXPECT_EQ(std::any_cast<Conflict>(few.explanation).cells.size(), std::size_t{32});
+    EXPECT_NE(few.message.find("29 more cells"), std::string::npos) << few.message;
+    const Error many = make_one_too_many(33).error();
+    const auto conflict = std::any_cast<Conflict>(many.explanation);
+    EXPECT_TRUE(conflict.cells.empty());
+    EXPECT_EQ(conflict.constraints.size(), std::size_t{2});
+    EXPECT_TRUE(conflict.is_minimal);
+}
+
+TEST(Explanation, TellsEightDemandsOnACellAtMost) {
+    Parameters parameters;
+    parameters.size = GridSize{2, 1, 2};
+    for (int i = 0; i < 9; ++i) {
+        Constraint fixed = {Fixed{}, {i == 0 ? "a" : "b"}};
+        fixed.region.cells = {{1, 0, 1}};
+        parameters.constraints.push_back(fixed);
+    }
+    const Error error = make(make_any(), fill_defaults(parameters, make_any()), 1).error();
+    EXPECT_NE(error.message.find("constraint 7 (fixed of \"b\"))"), std::string::npos)
+        << error.message;
+    EXPECT_EQ(error.message.find("constraint 8"), std::string::npos) << error.message;
+}
+
+TEST(Explanation, IsCancelledWhenAsked) {
+    Parameters parameters;
+    parameters.size = GridSize{2, 1, 2};
+    parameters.constraints = {{Count{4, {}}, {"a"}}, {Fixed{}, {"b"}}};
+    parameters = fill_defaults(parameters, make_any());
+    const auto problem = make_problem(make_any(), parameters);
+    ASSERT_TRUE(problem);
+    std::stop_source stop;
+    stop.request_stop();
+    const Error known = {ErrorCode::kContradiction, "known", {}};
+    EXPECT_EQ(
+        explain(known, make_any(), parameters, *problem, stop.get_token()).code,
+        ErrorCode::kCancelled
+    );
+    EXPECT_NE(explain(known, make_any(), parameters, *problem, {}).message, "known");
+}
+
+TEST(Explanation, OfWhatIsPossibleIsWhatWasKnown) {
+    Parameters parameters;
+    parameters.size = GridSize{2, 1, 2};
+    parameters = fill_defaults(parameters, make_any());
+    const auto problem = make_problem(make_any(), parameters);
+    ASSERT_TRUE(problem);
+    const Error known = {ErrorCode::kContradiction, "known", {}};
+    EXPECT_EQ(explain(known, make_any(), parameters, *problem, {}).message, "known");
+}
+
 // A floor of a's of which one cell is made anew.
 class OriginExplanation : public ::testing::Test {
   protected:
@@ -366,13 +440,7 @@ class OriginExplanation : public ::testing::Test {
         Parameters parameters;
         parameters.size = GridSize{3, 1, 3};
         parameters.constraints = {{Fixed{}, {"a", "b"}}, constraint};
-        const Example example = make_example({2, 1, 2}, {0, 1, 1, 0}, 2);
-        Example any = example;
-        for (const std::uint8_t axis : {std::uint8_t{0}, std::uint8_t{2}}) {
-            for (const Label label : {Label{0}, Label{1}}) {
-                any.adjacency.push_back({axis, label, label});
-            }
-        }
+        const Example any = make_any();
         Origin origin = {{3, 1, 3}, std::vector<Label>(9, Label{0})};
         origin.remade.cells = {{1, 0, 1}};
         const auto preparation = Preparation::make(
