@@ -152,8 +152,7 @@ OrderedJson write_side(const SideBoundary& side) {
     return "free";
 }
 
-Parameters read_parameters(const Value& value, const RequestLimits& limits) {
-    Parameters parameters;
+Parameters read_parameters(const Value& value, const RequestLimits& limits, Parameters parameters) {
     ObjectReader reader(value);
     if (const auto size = reader.optional("size")) {
         read_size(*size, limits, parameters);

@@ -11,8 +11,11 @@
 
 namespace modelsynth::proto {
 
-// What stands under `parameters` of a discrete job; faults are noted in the value's list.
-[[nodiscard]] discrete::Parameters read_parameters(const Value& value, const RequestLimits& limits);
+// What stands under `parameters` of a discrete job, put over what is known of them before, each
+// field for itself and each side of the boundary; faults are noted in the value's list.
+[[nodiscard]] discrete::Parameters read_parameters(
+    const Value& value, const RequestLimits& limits, discrete::Parameters parameters
+);
 
 // The inverse, every default written out. Requires: defaults filled in.
 [[nodiscard]] OrderedJson write_parameters(const discrete::Parameters& parameters);

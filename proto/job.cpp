@@ -32,14 +32,25 @@ double fraction(std::uint64_t part, std::uint64_t whole) {
 
 OrderedJson triple(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
 
+// How a job may start from a finished one: places in the model as the parameters tell them.
+OrderedJson from_schema(const OrderedJson& parameters) {
+    OrderedJson schema = OrderedJson::parse(kDiscreteFromSchema);
+    for (const char* name : {"box", "cells", "mask", "voxels", "cell"}) {
+        schema["$defs"][name] = parameters.at("$defs").at(name);
+    }
+    return schema;
+}
+
 OrderedJson solver_document() {
+    const OrderedJson parameters = OrderedJson::parse(kDiscreteParametersSchema);
     return {
         {"name", "discrete"},
         {"title", "Discrete model synthesis"},
         {"description",
          "Labels on a grid: any two neighbours in the model are neighbours in the example "
          "(Merrell 2009, chapter 3)."},
-        {"parameters", OrderedJson::parse(kDiscreteParametersSchema)},
+        {"parameters", parameters},
+        {"from", from_schema(parameters)},
         {"urls", {{"self", "/v1/solvers/discrete"}}}};
 }
 

@@ -2,6 +2,7 @@
 
 #include "proto/discrete_codec.h"
 #include "proto/json.h"
+#include "proto/origin_codec.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,33 +10,6 @@
 namespace modelsynth::proto {
 
 namespace {
-
-struct NamedExample {
-    std::string id;  // empty: inline
-    std::optional<Example> example;
-};
-
-NamedExample read_named_example(
-    const Value& value, const RequestLimits& limits, const FindExample& find_example
-) {
-    NamedExample named;
-    if (value.json().is_object()) {
-        if (auto example = read_example(value, limits)) {
-            named.example = std::make_shared<const discrete::Example>(std::move(*example));
-        }
-        return named;
-    }
-    if (!value.json().is_string()) {
-        value.fault("must be the id of an example or an example object");
-        return named;
-    }
-    named.id = value.string(limits.name_characters_max).value_or("");
-    named.example = find_example(named.id);
-    if (!named.example) {
-        value.fault("there is no example \"" + named.id.substr(0, 64) + "\"");
-    }
-    return named;
-}
 
 OrderedJson read_tags(const Value& value, const RequestLimits& limits) {
     OrderedJson tags = OrderedJson::object();
@@ -66,7 +40,7 @@ bool only_too_large(const std::vector<Fault>& faults) {
 }
 
 // What only shows once the defaults are filled in: against the example, and against the limits.
-void check_complete(
+void check_against_limits(
     const Example& example,
     const Parameters& parameters,
     const RequestLimits& limits,
@@ -77,7 +51,7 @@ void check_complete(
     if (discrete.size->cell_count() > limits.model_cells_max) {
         faults.add(
             "/parameters/size",
-            "the example's default size passes the limit model_cells_max, " +
+            "the default size passes the limit model_cells_max, " +
                 std::to_string(limits.model_cells_max),
             true
         );
@@ -102,86 +76,268 @@ Problem refusal(std::vector<Fault> faults) {
     return problem;
 }
 
+// One request on its way in: the fields in their order, then what they mean together.
+class RequestReader {
+  public:
+    RequestReader(
+        const Json& json,
+        const RequestLimits& limits,
+        const FindExample& find_example,
+        const FindOrigin& find_origin
+    )
+        : limits_(limits),
+          find_example_(find_example),
+          find_origin_(find_origin),
+          fields_(Value(json, "", faults_)) {}
+
+    Parsed<JobRequest> read(std::uint64_t seed_if_absent) {
+        read_from();
+        if (const auto solver = required_or_inherited("solver")) {
+            static_cast<void>(solver->one_of({"discrete"}));
+        }
+        request_.solver = "discrete";
+        read_example();
+        read_seed(seed_if_absent);
+        read_parameters();
+        read_the_rest();
+        fields_.finish();
+        check_complete();
+        if (!faults_.empty()) {
+            // Once these are mended the job may have come to its end.
+            faults_.add_all("", origin_problem_ ? origin_problem_->errors : std::vector<Fault>());
+            return tl::unexpected(refusal(faults_.take()));
+        }
+        if (origin_problem_) {
+            return tl::unexpected(std::move(*origin_problem_));
+        }
+        request_.echo = write_echo();
+        if (earlier_ && !parse_json(request_.echo, limits_.json)) {
+            return tl::unexpected(refusal(
+                {{"/from",
+                  "that job's request and this one are more than one request may hold",
+                  true}}
+            ));
+        }
+        return std::move(request_);
+    }
+
+  private:
+    void read_from() {
+        const auto from = fields_.optional("from");
+        if (!from) {
+            return;
+        }
+        request_.from = read_origin(*from, limits_, !find_origin_);
+        if (!find_origin_ || request_.from->job_id.empty()) {
+            return;
+        }
+        auto earlier = find_origin_(request_.from->job_id);
+        if (earlier) {
+            earlier_ = std::move(*earlier);
+            take_origin_size();
+        } else if (earlier.error().status == 404) {
+            faults_.add("/from/job", "there is no job \"" + request_.from->job_id + "\"");
+        } else {
+            origin_problem_ = std::move(earlier.error());
+            origin_problem_->errors = {{"/from/job", origin_problem_->detail}};
+        }
+    }
+
+    void take_origin_size() {
+        GridSize& told = request_.from->origin.size;
+        const GridSize size = model_size(earlier_->task.parameters);
+        if (told != GridSize{} && told != size) {
+            faults_.add("/from/size", "is not the size of that job's model");
+        }
+        told = size;
+    }
+
+    // Whether an earlier job tells what is not given.
+    [[nodiscard]] bool inherits() const { return request_.from && find_origin_; }
+
+    std::optional<Value> required_or_inherited(const char* name) {
+        return inherits() ? fields_.optional(name) : fields_.required(name);
+    }
+
+    void read_example() {
+        const auto given = required_or_inherited("example");
+        if (!given) {
+            if (earlier_) {
+                example_ = earlier_->task.example;
+                request_.example_id = earlier_->example_id;
+                written_example_ = OrderedJson::parse(earlier_->echo).at("example");
+            }
+            return;
+        }
+        Faults faults;
+        const Value value(given->json(), given->pointer(), faults);
+        if (value.json().is_object()) {
+            read_inline_example(value);
+        } else if (value.json().is_string()) {
+            find_named_example(value);
+        } else {
+            value.fault("must be the id of an example or an example object");
+        }
+        if (example_ && earlier_ && label_names(*example_) != label_names(earlier_->task.example)) {
+            value.fault("must have the pieces of that job's example, in the same order");
+            example_ = earlier_->task.example;  // what else is wrong is told by the right one
+        }
+        faults_.add_all("", faults.take());
+    }
+
+    void read_inline_example(const Value& value) {
+        if (auto example = proto::read_example(value, limits_)) {
+            example_ = std::make_shared<const discrete::Example>(std::move(*example));
+            written_example_ = OrderedJson::parse(dump(value.json()));
+        }
+    }
+
+    void find_named_example(const Value& value) {
+        const std::string id = value.string(limits_.name_characters_max).value_or("");
+        // The earlier job's own is known even when it was deleted since.
+        const bool is_known = earlier_ && !id.empty() && id == earlier_->example_id;
+        example_ = is_known ? earlier_->task.example : find_example_(id);
+        if (!example_) {
+            value.fault("there is no example \"" + id.substr(0, 64) + "\"");
+        }
+        request_.example_id = id;
+        written_example_ = id;
+    }
+
+    void read_seed(std::uint64_t seed_if_absent) {
+        request_.task.seed = seed_if_absent;
+        if (const auto seed = fields_.optional("seed")) {
+            request_.task.seed = static_cast<std::uint64_t>(
+                seed->integer(0, static_cast<std::int64_t>(kSeedMax)).value_or(0)
+            );
+        }
+    }
+
+    void read_parameters() {
+        if (earlier_) {
+            parameters_ = std::get<discrete::Parameters>(earlier_->task.parameters);
+        }
+        const auto given = fields_.optional("parameters");
+        if (!given) {
+            return;
+        }
+        const auto gives = [&given](const char* name) {
+            return given->json().is_object() && given->json().contains(name);
+        };
+        if (gives("size")) {
+            parameters_.size.reset();
+        }
+        parameters_ = proto::read_parameters(*given, limits_, std::move(parameters_));
+        size_is_usable_ = !gives("size") || (parameters_.size && parameters_.size->cell_count() <=
+                                                                     limits_.model_cells_max);
+        if (earlier_ && size_is_usable_ && *parameters_.size != request_.from->origin.size) {
+            fit_to_other_size(gives("blocks"), gives("constraints"));
+        }
+    }
+
+    // What the earlier job was asked for was meant for a model of its size.
+    void fit_to_other_size(bool gives_blocks, bool gives_constraints) {
+        discrete::Parameters before;
+        before.size = request_.from->origin.size;
+        const auto usual =
+            std::get<discrete::Parameters>(with_defaults(before, earlier_->task.example)).blocks;
+        if (!gives_blocks && parameters_.blocks == usual) {
+            parameters_.blocks.reset();
+        }
+        if (gives_constraints) {
+            return;
+        }
+        if (!lies_within(request_.from->origin, *parameters_.size)) {
+            parameters_.constraints.clear();  // no places in such a model; a fault will tell
+            return;
+        }
+        auto moved =
+            moved_constraints(std::move(parameters_.constraints), request_.from->origin.at);
+        if (moved) {
+            parameters_.constraints = std::move(*moved);
+        } else {
+            faults_.add(
+                "/parameters/constraints",
+                "must be given, since constraint " + std::to_string(moved.error()) +
+                    " of that job holds in a mask or voxels, which were for a model of its size"
+            );
+        }
+    }
+
+    void read_the_rest() {
+        if (const auto priority = fields_.optional("priority")) {
+            request_.priority = static_cast<std::int32_t>(priority->integer(-10, 10).value_or(0));
+        }
+        if (const auto deadline = fields_.optional("deadline")) {
+            request_.deadline_seconds = deadline->number_above(0, limits_.deadline_seconds_max);
+        }
+        if (const auto tags = fields_.optional("tags")) {
+            tags_ = read_tags(*tags, limits_);
+        }
+    }
+
+    void check_complete() {
+        // Without a usable size nothing can be said about places in the model.
+        if (!example_ || !size_is_usable_ || (inherits() && !earlier_)) {
+            return;
+        }
+        request_.task.example = *example_;
+        request_.task.parameters = with_defaults(parameters_, *example_);
+        check_against_limits(*example_, request_.task.parameters, limits_, faults_);
+        if (request_.from && request_.from->origin.size != GridSize{}) {
+            faults_.add_all(
+                "", find_origin_faults(*request_.from, model_size(request_.task.parameters))
+            );
+        }
+    }
+
+    [[nodiscard]] std::string write_echo() {
+        OrderedJson echo = {
+            {"solver", request_.solver},
+            {"example", std::move(written_example_)},
+            {"seed", request_.task.seed}};
+        if (request_.from) {
+            echo["from"] = write_origin(*request_.from);
+        }
+        echo["parameters"] =
+            write_parameters(std::get<discrete::Parameters>(request_.task.parameters));
+        echo["priority"] = request_.priority;
+        if (request_.deadline_seconds) {
+            echo["deadline"] = *request_.deadline_seconds;
+        }
+        echo["tags"] = std::move(tags_);
+        return dump(echo);
+    }
+
+    const RequestLimits& limits_;
+    const FindExample& find_example_;
+    const FindOrigin& find_origin_;
+    Faults faults_;
+    ObjectReader fields_;
+    JobRequest request_;
+    std::optional<JobRequest> earlier_;      // the one that this one starts from
+    std::optional<Problem> origin_problem_;  // why there is none, besides the request's faults
+    std::optional<Example> example_;
+    OrderedJson written_example_;  // as the echo tells it
+    discrete::Parameters parameters_;
+    bool size_is_usable_ = true;
+    OrderedJson tags_ = OrderedJson::object();
+};
+
 }  // namespace
 
 Parsed<JobRequest> parse_job_request(
     std::string_view body,
     const RequestLimits& limits,
     const FindExample& find_example,
+    const FindOrigin& find_origin,
     std::uint64_t seed_if_absent
 ) {
     auto json = parse_json(body, limits.json);
     if (!json) {
         return tl::unexpected(std::move(json.error()));
     }
-    Faults faults;
-    JobRequest request;
-    ObjectReader reader(Value(*json, "", faults));
-    if (const auto solver = reader.required("solver")) {
-        static_cast<void>(solver->one_of({"discrete"}));
-        request.solver = "discrete";
-    }
-    NamedExample named;
-    const auto example = reader.required("example");
-    if (example) {
-        Faults example_faults;
-        named = read_named_example(
-            Value(example->json(), example->pointer(), example_faults), limits, find_example
-        );
-        faults.add_all("", example_faults.take());
-    }
-    request.example_id = named.id;
-    request.task.seed = seed_if_absent;
-    if (const auto seed = reader.optional("seed")) {
-        request.task.seed = static_cast<std::uint64_t>(
-            seed->integer(0, static_cast<std::int64_t>(kSeedMax)).value_or(0)
-        );
-    }
-    discrete::Parameters parameters;
-    bool size_is_usable = true;
-    if (const auto given = reader.optional("parameters")) {
-        parameters = read_parameters(*given, limits);
-        const bool asks_size = given->json().is_object() && given->json().contains("size");
-        size_is_usable = !asks_size || (parameters.size &&
-                                        parameters.size->cell_count() <= limits.model_cells_max);
-    }
-    if (const auto priority = reader.optional("priority")) {
-        request.priority = static_cast<std::int32_t>(priority->integer(-10, 10).value_or(0));
-    }
-    if (const auto deadline = reader.optional("deadline")) {
-        request.deadline_seconds = deadline->number_above(0, limits.deadline_seconds_max);
-    }
-    OrderedJson tags = OrderedJson::object();
-    if (const auto given = reader.optional("tags")) {
-        tags = read_tags(*given, limits);
-    }
-    reader.finish();
-    // Without a usable size nothing can be said about places in the model.
-    if (named.example && size_is_usable) {
-        request.task.example = *named.example;
-        request.task.parameters = with_defaults(parameters, *named.example);
-        check_complete(*named.example, request.task.parameters, limits, faults);
-    }
-    if (!faults.empty()) {
-        return tl::unexpected(refusal(faults.take()));
-    }
-    OrderedJson echo = {
-        {"solver", request.solver},
-        {"example", nullptr},
-        {"seed", request.task.seed},
-        {"parameters", write_parameters(std::get<discrete::Parameters>(request.task.parameters))},
-        {"priority", request.priority}};
-    if (request.example_id.empty()) {
-        echo["example"] = OrderedJson::parse(dump(example->json()), nullptr, false);
-    } else {
-        echo["example"] = request.example_id;
-    }
-    if (request.deadline_seconds) {
-        echo["deadline"] = *request.deadline_seconds;
-    }
-    echo["tags"] = std::move(tags);
-    request.echo = dump(echo);
-    return request;
+    return RequestReader(*json, limits, find_example, find_origin).read(seed_if_absent);
 }
 
 Parsed<std::string> canonical_json(std::string_view body, const JsonLimits& limits) {

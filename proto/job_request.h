@@ -12,11 +12,19 @@
 
 namespace modelsynth::proto {
 
+// The finished job that another one starts from.
+struct JobOrigin {
+    std::string job_id;
+    // Without its labels: they are not on the wire; whoever runs the job puts them there.
+    discrete::Origin origin = {};
+};
+
 // A job request, checked whole and with every default filled in.
 struct JobRequest {
     std::string solver;
     std::string example_id;  // empty: the example came inline
-    Task task;
+    Task task;               // without its origin
+    std::optional<JobOrigin> from;
     std::int32_t priority = 0;
     std::optional<double> deadline_seconds;
     // The request as JSON text with seed and defaults filled in: sent again it gives the same
@@ -27,12 +35,20 @@ struct JobRequest {
 // The example of an id, or nothing.
 using FindExample = std::function<std::optional<Example>(const std::string& id)>;
 
-// Reads and checks a request. `seed_if_absent` is used when it names none.
-// Fails: malformed-json, invalid-request with every fault, too-large.
+// The request of a finished job, for one that starts from it: solver, example and parameters are
+// taken from there, field by field, unless they are given. Fails: not-found when there is no such
+// job, which is a fault of the request; else with the problem that the request is answered with.
+using FindOrigin = std::function<Parsed<JobRequest>(const std::string& job_id)>;
+
+// Reads and checks a request. `seed_if_absent` is used when it names none. Without `find_origin`
+// it is an echo, which tells all that it needs of the job that it starts from.
+// Fails: malformed-json, invalid-request with every fault, too-large; when nothing else is wrong,
+//        as find_origin.
 [[nodiscard]] Parsed<JobRequest> parse_job_request(
     std::string_view body,
     const RequestLimits& limits,
     const FindExample& find_example,
+    const FindOrigin& find_origin,
     std::uint64_t seed_if_absent
 );
 

@@ -99,23 +99,43 @@ CLI::Option* add_output(CLI::App& command, std::string& output) {
         ->check(refuse_empty);
 }
 
-void add_request(CLI::App& command, RequestOptions& request) {
-    CLI::Option_group* const choice =
-        command.add_option_group("request", "What to make: an example with options, or all of it");
-    choice->require_option(1);
-    choice->add_option(
+// The option that names a job to start from.
+CLI::Option* add_request(CLI::App& command, RequestOptions& request) {
+    CLI::Option_group* const choice = command.add_option_group(
+        "request", "What to make: an example or a finished job with options, or all of it"
+    );
+    choice->require_option(1, 2);
+    CLI::Option* const example = choice->add_option(
         "--example", request.example, "Id of an example, or a file of one (.json, or with a slash)"
     );
+    CLI::Option* const from =
+        choice
+            ->add_option(
+                "--from",
+                request.from,
+                "Finished job to start from: its model keeps its labels but in the --box, and "
+                "grows to a larger --size; what is not given is as it was there"
+            )
+            ->type_name("JOB")
+            ->check(refuse_empty);
     CLI::Option* const whole =
         choice
             ->add_option(
                 "--request", request.request_file, "Whole request; \"-\" is standard input"
             )
-            ->type_name("FILE");
+            ->type_name("FILE")
+            ->excludes(example)
+            ->excludes(from);
     const auto add = [&](const char* name, auto& value, const char* description) {
         return command.add_option(name, value, description)->excludes(whole);
     };
-    add("--solver", request.solver, "Name of the solver")->capture_default_str();
+    add("--solver", request.solver, "Name of the solver; default: discrete");
+    add("--box", request.box, "Cells that are made anew, the second corner exclusive")
+        ->type_name("X,Y,Z:X,Y,Z")
+        ->needs(from);
+    add("--at", request.at, "Where the job's model lies in a larger one; default: 0,0,0")
+        ->type_name("X,Y,Z")
+        ->needs(from);
     add("--size", request.size, "Cells along x, y (up) and z")->type_name("40x10x40");
     add("--seed", request.seed, "Same seed, same model")->check(CLI::NonNegativeNumber);
     add("--parameters", request.parameters, "The solver's parameters; --size is put with them")
@@ -123,6 +143,7 @@ void add_request(CLI::App& command, RequestOptions& request) {
     add("--priority", request.priority, "-10 ... 10, higher first");
     add("--deadline", request.deadline_seconds, "Longest solving time")->type_name("SECONDS");
     add("--tag", request.tags, "Tags of the job")->type_name("NAME=VALUE");
+    return from;
 }
 
 void add_job_commands(CLI::App& app, Options& options) {
@@ -165,10 +186,10 @@ void add_job_commands(CLI::App& app, Options& options) {
     CLI::App& run = *add_command(
         app, options.invocation, "run", "Make a model: submit, follow and fetch, or --local"
     );
-    add_request(run, options.run.request);
+    CLI::Option* const from = add_request(run, options.run.request);
     add_output(run, options.run.output)->required();
     add_profile(run, options.run.profile);
-    run.add_flag("--local", options.run.is_local, "Solve here, without a server");
+    run.add_flag("--local", options.run.is_local, "Solve here, without a server")->excludes(from);
 }
 
 void add_catalog_commands(CLI::App& app, Options& options) {

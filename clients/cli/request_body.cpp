@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -62,6 +63,46 @@ Outcome<std::string> parameters_text(const RequestOptions& options) {
     return with_field(text, "\"size\":" + Json(*size).dump());
 }
 
+// Three counts with a separator between them.
+std::optional<std::array<std::uint32_t, 3>> parse_three(std::string_view text, char separator) {
+    std::array<std::uint32_t, 3> three = {};
+    const char* next = text.data();
+    const char* const end = text.data() + text.size();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (axis > 0 && (next == end || *next++ != separator)) {
+            return std::nullopt;
+        }
+        const auto [stop, error] = std::from_chars(next, end, three[axis]);
+        if (error != std::errc()) {
+            return std::nullopt;
+        }
+        next = stop;
+    }
+    return next == end ? std::optional(three) : std::nullopt;
+}
+
+Outcome<std::string> from_text(const RequestOptions& options) {
+    Json from = {{"job", options.from}};
+    if (!options.at.empty()) {
+        const auto at = parse_three(options.at, ',');
+        if (!at) {
+            return wrong_usage("the place \"" + options.at + "\" is not like 10,0,10");
+        }
+        from["at"] = *at;
+    }
+    if (!options.box.empty()) {
+        const std::string_view box = options.box;
+        const std::size_t colon = std::min(box.find(':'), box.size());
+        const auto min = parse_three(box.substr(0, colon), ',');
+        const auto max = parse_three(box.substr(std::min(colon + 1, box.size())), ',');
+        if (!min || !max) {
+            return wrong_usage("the box \"" + options.box + "\" is not like 0,0,0:8,10,8");
+        }
+        from["box"] = {{"min", *min}, {"max", *max}};
+    }
+    return from.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Outcome<std::string> tags_text(const std::vector<std::string>& tags) {
     Json object = Json::object();
     for (const std::string& tag : tags) {
@@ -80,55 +121,58 @@ Outcome<std::string> make_request_body(const RequestOptions& options) {
     if (!options.request_file.empty()) {
         return read_input(options.request_file);
     }
-    const auto example = example_text(options.example);
-    if (!example) {
-        return example;
+    std::string body = "{";
+    const auto add = [&body](const char* name, const std::string& text) {
+        body += std::string(body.size() > 1 ? "," : "") + "\"" + name + "\":" + text;
+    };
+    if (!options.solver.empty() || options.from.empty()) {
+        add("solver", quote(options.solver.empty() ? "discrete" : options.solver));
     }
-    std::string body = "{\"solver\":" + quote(options.solver) + ",\"example\":" + *example;
+    if (!options.example.empty()) {
+        const auto example = example_text(options.example);
+        if (!example) {
+            return example;
+        }
+        add("example", *example);
+    }
+    if (!options.from.empty()) {
+        const auto from = from_text(options);
+        if (!from) {
+            return from;
+        }
+        add("from", *from);
+    }
     if (options.seed) {
-        body += ",\"seed\":" + std::to_string(*options.seed);
+        add("seed", std::to_string(*options.seed));
     }
     if (!options.parameters.empty() || !options.size.empty()) {
         const auto parameters = parameters_text(options);
         if (!parameters) {
             return parameters;
         }
-        body += ",\"parameters\":" + *parameters;
+        add("parameters", *parameters);
     }
     if (options.priority) {
-        body += ",\"priority\":" + std::to_string(*options.priority);
+        add("priority", std::to_string(*options.priority));
     }
     if (options.deadline_seconds) {
         if (!std::isfinite(*options.deadline_seconds)) {
             return wrong_usage("the deadline is no number of seconds");
         }
-        body += ",\"deadline\":" + Json(*options.deadline_seconds).dump();
+        add("deadline", Json(*options.deadline_seconds).dump());
     }
     if (!options.tags.empty()) {
         const auto tags = tags_text(options.tags);
         if (!tags) {
             return tags;
         }
-        body += ",\"tags\":" + *tags;
+        add("tags", *tags);
     }
     return body + "}";
 }
 
 std::optional<std::array<std::uint32_t, 3>> parse_size(std::string_view text) {
-    std::array<std::uint32_t, 3> size = {};
-    const char* next = text.data();
-    const char* const end = text.data() + text.size();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (axis > 0 && (next == end || *next++ != 'x')) {
-            return std::nullopt;
-        }
-        const auto [stop, error] = std::from_chars(next, end, size[axis]);
-        if (error != std::errc()) {
-            return std::nullopt;
-        }
-        next = stop;
-    }
-    return next == end ? std::optional(size) : std::nullopt;
+    return parse_three(text, 'x');
 }
 
 }  // namespace modelsynth::cli

@@ -14,9 +14,12 @@ namespace modelsynth::cli {
 // A job request as the command line gives it; what is absent is left to the server.
 struct RequestOptions {
     std::string request_file;  // the whole request, "-" for standard input; all else is then empty
-    std::string solver = "discrete";
-    std::string example;  // an id, or a file: its name ends in .json or has a slash
-    std::string size;     // 40x10x40
+    std::string solver;        // empty: discrete, or that of the job to start from
+    std::string example;       // an id, or a file: its name ends in .json or has a slash
+    std::string from;          // a finished job to start from; it tells what is not given
+    std::string box;           // of the new model, made anew: 0,0,0:8,10,8
+    std::string at;            // where the job's model lies in the new one: 10,0,10
+    std::string size;          // 40x10x40
     std::optional<std::uint64_t> seed;
     std::string parameters;  // an object as text, or a file of it
     std::optional<std::int64_t> priority;

@@ -40,6 +40,11 @@ std::optional<Example> find_built_in(const std::string& id) {
     return std::nullopt;
 }
 
+// Jobs are on servers.
+proto::Parsed<proto::JobRequest> find_no_job(const std::string& /*id*/) {
+    return tl::unexpected(proto::make_problem("not-found", "there are no jobs here"));
+}
+
 std::uint64_t draw_seed() {
     std::random_device device;
     return ((std::uint64_t{device()} << 32U) | device()) & proto::kSeedMax;
@@ -152,7 +157,8 @@ Outcome<void> run_local(const RunOptions& options, bool as_json) {
     if (!body) {
         return tl::unexpected(body.error());
     }
-    const auto request = proto::parse_job_request(*body, {}, find_built_in, draw_seed());
+    const auto request =
+        proto::parse_job_request(*body, {}, find_built_in, find_no_job, draw_seed());
     if (!request) {
         return tl::unexpected(failure_of(request.error()));
     }

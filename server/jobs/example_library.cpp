@@ -54,6 +54,8 @@ std::optional<ExampleLibrary::Entry> ExampleLibrary::find(const std::string& id)
     return entry;
 }
 
+std::string ExampleLibrary::id_of(const std::string& digest) { return "x" + digest.substr(0, 24); }
+
 std::optional<Example> ExampleLibrary::load(const std::string& digest) {
     const auto text = artifacts_.load(digest);
     if (!text) {
@@ -90,7 +92,7 @@ proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view tex
         return tl::unexpected(problem_of(pin.error()));
     }
     const std::string& digest = (*pin)->digest();
-    Entry entry = {"x" + digest.substr(0, 24), false, upload->example, digest};
+    Entry entry = {id_of(digest), false, upload->example, digest};
     const auto kept = store_.add_example({entry.id, upload->example->name, digest}, uploads_max_);
     if (!kept) {
         if (kept.error().code == StoreErrorCode::kQueueFull) {

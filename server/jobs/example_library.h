@@ -35,6 +35,9 @@ class ExampleLibrary {
 
     [[nodiscard]] std::optional<Entry> find(const std::string& id);
 
+    // The id of an uploaded example with a text of this digest.
+    [[nodiscard]] static std::string id_of(const std::string& digest);
+
     // An uploaded example by the digest of its text, deleted or not.
     [[nodiscard]] std::optional<Example> load(const std::string& digest);
 

@@ -1,7 +1,6 @@
 #include "server/jobs/job_service.h"
 
 #include "proto/frame.h"
-#include "proto/job_request.h"
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
 
@@ -132,6 +131,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     if (draining_) {
         return tl::unexpected(make_problem("draining", "the server is stopping"));
     }
+    InheritedInputs inputs;
     auto request = proto::parse_job_request(
         body,
         config_.limits,
@@ -139,6 +139,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
             auto entry = examples_.find(id);
             return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
+        [this, &inputs](const std::string& id) { return find_origin(id, inputs); },
         make_seed()
     );
     if (!request) {
@@ -155,6 +156,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     job.idempotency_key = idempotency_key;
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
+    job.artifacts = inputs.links(job.example_id);
     auto submitted = parsed(jobs_.submit(job, config_.queue_max));
     if (submitted && !submitted->replayed) {
         const std::lock_guard lock(mutex_);
@@ -215,6 +217,15 @@ Parsed<Job> JobService::find_finished(const std::string& id) {
     return job;
 }
 
+Parsed<proto::JobRequest> JobService::find_origin(const std::string& id, InheritedInputs& inputs) {
+    const auto job = find_finished(id);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    const auto taken = inputs.take(jobs_, artifacts_, id);
+    return taken ? read_request(*job) : tl::unexpected(problem_of(taken.error()));
+}
+
 Stored<std::string> JobService::load_labels(const std::string& id) {
     const auto digest = jobs_.artifact(id, "labels");
     if (digest) {
@@ -232,21 +243,23 @@ Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
     return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
 }
 
-Parsed<JobService::LoadedModel> JobService::load_model(
-    const Job& job, const std::string& encoded_labels
-) {
-    auto request = proto::parse_job_request(
+Parsed<proto::JobRequest> JobService::read_request(const Job& job) {
+    return proto::parse_job_request(
         job.request,
         config_.limits,
         [this, &job](const std::string& id) -> std::optional<Example> {
-            if (auto entry = examples_.find(id)) {
-                return std::move(entry->example);
-            }
-            const auto kept = jobs_.artifact(job.id, kExampleArtifact);
-            return kept ? examples_.load(*kept) : std::nullopt;
+            auto entry = find_example(jobs_, examples_, job.id, id);
+            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
+        nullptr,
         job.seed
     );
+}
+
+Parsed<JobService::LoadedModel> JobService::load_model(
+    const Job& job, const std::string& encoded_labels
+) {
+    auto request = read_request(job);
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }

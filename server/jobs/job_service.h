@@ -1,10 +1,12 @@
 #pragma once
 
 #include "proto/job.h"
+#include "proto/job_request.h"
 #include "proto/limits.h"
 #include "proto/problem.h"
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
+#include "server/jobs/job_inputs.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
 #include "server/jobs/worker.h"
@@ -113,10 +115,17 @@ class JobService {
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(
         const proto::Job& job, const std::string& encoded_labels
     );
+    // The request as it was accepted; its example is found even when it was deleted since.
+    [[nodiscard]] proto::Parsed<proto::JobRequest> read_request(const proto::Job& job);
     [[nodiscard]] Stored<std::string> load_labels(const std::string& id);
     // Fails: not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
+    // The request of a job to start from; what the new one needs of it goes to `inputs`.
+    // Fails: as find_finished().
+    [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
+        const std::string& id, InheritedInputs& inputs
+    );
 
     JobServiceConfig config_;
     JobStore& jobs_;

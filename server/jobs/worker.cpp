@@ -3,6 +3,7 @@
 #include "proto/frame.h"
 #include "proto/job_request.h"
 #include "proto/timestamp.h"
+#include "server/jobs/job_inputs.h"
 #include "server/jobs/logging_observer.h"
 #include "server/jobs/store_problem.h"
 #include "solver/mesh/glb_writer.h"
@@ -41,15 +42,27 @@ class ClaimRun {
             claim_.job.request,
             context_.limits,
             [this](const std::string& id) -> std::optional<Example> {
-                auto entry = context_.examples.find(id);
+                auto entry =
+                    find_example(context_.jobs, context_.examples, claim_.lease.job_id, id);
                 example_digest_ = entry ? entry->digest : "";
                 return entry ? std::optional(std::move(entry->example)) : std::nullopt;
             },
+            nullptr,
             claim_.job.seed
         );
         if (!request) {
             fail(request.error());
             return;
+        }
+        if (request->from) {
+            auto origin = load_origin(
+                context_.jobs, context_.artifacts, claim_.lease.job_id, request->from->origin
+            );
+            if (!origin) {
+                fail(origin.error());
+                return;
+            }
+            request->task.origin = std::move(*origin);
         }
         solve(request->task);
     }

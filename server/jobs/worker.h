@@ -20,9 +20,6 @@ namespace modelsynth::server {
 // the server down with it, or time and again there is none to make it.
 inline constexpr std::uint32_t kFruitlessClaimsMax = 8;
 
-// The name under which a job keeps the text of an uploaded example.
-inline constexpr const char* kExampleArtifact = "example";
-
 // What a worker needs; everything outlives it and is thread-safe.
 struct WorkerContext {
     JobStore& jobs;

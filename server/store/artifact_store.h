@@ -34,6 +34,9 @@ class ArtifactStore {
     // On disk when it returns; the same bytes twice are one file.
     [[nodiscard]] virtual Stored<std::unique_ptr<Pin>> put(std::string_view bytes) = 0;
 
+    // Keeps what is stored already. Fails: kNotFound.
+    [[nodiscard]] virtual Stored<std::unique_ptr<Pin>> pin(const std::string& digest) = 0;
+
     [[nodiscard]] virtual Stored<std::unique_ptr<Reader>> open(const std::string& digest) = 0;
 
     // The whole content, checked against the digest. Fails: kNotFound, kCorrupt.

@@ -15,9 +15,9 @@ class JobStore {
   public:
     virtual ~JobStore() = default;
 
-    // Job, key and event 1 (`queued`) appear in one commit, or none does. A known key with the
-    // same hash answers with its job. Fails: kConflict (the key has another hash), kQueueFull
-    // when queue_max jobs are queued.
+    // Job, key, links to artifacts and event 1 (`queued`) appear in one commit, or none does. A
+    // known key with the same hash answers with its job. Fails: kConflict (the key has another
+    // hash, or a digest is not stored), kQueueFull when queue_max jobs are queued.
     [[nodiscard]] virtual Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) = 0;
 
     // The job that was submitted with the key, or nothing. Fails: kConflict as submit().

@@ -33,6 +33,11 @@ struct StoreError {
 template <class T>
 using Stored = tl::expected<T, StoreError>;
 
+struct ArtifactLink {
+    std::string name;  // "model.glb", "labels", ...
+    std::string digest;
+};
+
 // A job as it is submitted.
 struct NewJob {
     std::string id;
@@ -44,6 +49,7 @@ struct NewJob {
     std::string request_hash;     // of what the client sent, for idempotency
     std::string idempotency_key;  // empty: none
     std::optional<double> deadline_seconds;
+    std::vector<ArtifactLink> artifacts = {};  // what it needs of others, kept with it from now on
     proto::UnixMillis created = 0;
 };
 
@@ -103,11 +109,6 @@ struct Progress {
     // Kept in place of an older one when given. Its seq is set by the store: the last event of
     // the append.
     std::optional<JobCheckpoint> checkpoint;
-};
-
-struct ArtifactLink {
-    std::string name;  // "model.glb", "labels", ...
-    std::string digest;
 };
 
 // How a job ended.

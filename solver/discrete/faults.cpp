@@ -68,25 +68,6 @@ void find_boundary_faults(
     }
 }
 
-void find_region_faults(
-    const Region& region,
-    const GridSize& size,
-    const std::string& pointer,
-    std::vector<Fault>& faults
-) {
-    if (region.box && !(size.contains(region.box->min) && region.box->max.x <= size.x &&
-                        region.box->max.y <= size.y && region.box->max.z <= size.z)) {
-        faults.push_back({pointer + "/box", "the box reaches beyond the model"});
-    }
-    for (std::size_t c = 0; c < region.cells.size(); ++c) {
-        if (!size.contains(region.cells[c])) {
-            faults.push_back(
-                {pointer + "/cells/" + std::to_string(c), "the cell is outside the model"}
-            );
-        }
-    }
-}
-
 void find_rule_faults(
     const Constraint& constraint,
     const GridSize& size,
@@ -239,6 +220,25 @@ void find_constraint_faults(
 }
 
 }  // namespace
+
+void find_region_faults(
+    const Region& region,
+    const GridSize& size,
+    const std::string& pointer,
+    std::vector<Fault>& faults
+) {
+    if (region.box && !(size.contains(region.box->min) && region.box->max.x <= size.x &&
+                        region.box->max.y <= size.y && region.box->max.z <= size.z)) {
+        faults.push_back({pointer + "/box", "the box reaches beyond the model"});
+    }
+    for (std::size_t c = 0; c < region.cells.size(); ++c) {
+        if (!size.contains(region.cells[c])) {
+            faults.push_back(
+                {pointer + "/cells/" + std::to_string(c), "the cell is outside the model"}
+            );
+        }
+    }
+}
 
 std::vector<Fault> find_faults(const Example& example, const Parameters& parameters) {
     std::vector<Fault> faults;

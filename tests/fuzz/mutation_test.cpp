@@ -19,6 +19,7 @@
 
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -109,13 +110,13 @@ TEST(Fuzz, JobRequests) {
         R"("priority":1,"deadline":2.5,"tags":{"a":"b"}})";
     const auto none = [](const std::string&) { return std::optional<Example>(); };
     fuzz(request, 1, [&none](const std::string& text) {
-        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        const auto parsed = proto::parse_job_request(text, {}, none, nullptr, 1);
         if (!parsed) {
             EXPECT_FALSE(proto::to_json(parsed.error()).empty());
             return false;
         }
         // What is accepted is echoed in a form that is accepted again and says the same.
-        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
         EXPECT_TRUE(again && again->echo == parsed->echo) << text;
         return true;
     });
@@ -152,17 +153,73 @@ TEST(Fuzz, Constraints) {
     constexpr std::size_t kMadeCellsMax = 1000;
     std::size_t made = 0;
     fuzz(request, 8, [&](const std::string& text) {
-        const auto parsed = proto::parse_job_request(text, {}, none, 1);
+        const auto parsed = proto::parse_job_request(text, {}, none, nullptr, 1);
         if (!parsed) {
             EXPECT_FALSE(proto::to_json(parsed.error()).empty());
             return false;
         }
-        const auto again = proto::parse_job_request(parsed->echo, {}, none, 2);
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
         EXPECT_TRUE(again && again->echo == parsed->echo) << text;
         if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
             Preparations preparations;
             Silent observer;
             const auto finished = run(parsed->task, preparations, observer, {});
+            EXPECT_TRUE(finished || !finished.error().message.empty());
+            made += finished ? 1U : 0U;
+        }
+        return true;
+    });
+    EXPECT_GT(made, 1U);  // the request as it stands, and others
+}
+
+// What is accepted of a start from another job tells all of it, and can be made or is refused with
+// a reason.
+TEST(Fuzz, JobsThatStartFromAnother) {
+    const auto none = [](const std::string&) { return std::optional<Example>(); };
+    const auto earlier = proto::parse_job_request(
+        std::string(R"({"solver":"discrete","example":)") + kExample +
+            R"(,"seed":7,"parameters":{"size":[4,2,4],"blocks":{"size":[2,2,2]},"boundary":)"
+            R"({"bottom":"free","top":"free","north":"free","south":"free"},"constraints":[)"
+            R"({"kind":"fixed","pieces":["ground"],"cells":[[3,0,3]]},)"
+            R"({"kind":"path","pieces":["ground"],"from":[0,0,0],"to":[3,0,3]}]}})",
+        {},
+        none,
+        nullptr,
+        1
+    );
+    ASSERT_TRUE(earlier) << proto::to_json(earlier.error());
+    Preparations preparations;
+    Silent observer;
+    const auto first = run(earlier->task, preparations, observer, {});
+    ASSERT_TRUE(first) << first.error().message;
+    const auto find = [&earlier](const std::string& id) -> proto::Parsed<proto::JobRequest> {
+        if (id == "a") {
+            return *earlier;
+        }
+        return tl::unexpected(proto::make_problem("not-found", "there is no such job"));
+    };
+    constexpr std::size_t kMadeCellsMax = 1000;
+    std::size_t made = 0;
+    const std::string request =
+        R"({"from":{"job":"a","size":[4,2,4],"at":[1,0,0],"box":{"min":[2,0,1],"max":[4,2,3]},)"
+        R"("cells":[[0,0,0],[1,1,3]],"voxels":{"size":[1,1,2],"values":[0.75,0]}},"seed":3,)"
+        R"("parameters":{"size":[6,2,5],"order":"random","weights":{"wall":3}},"priority":1})";
+    fuzz(request, 9, [&](const std::string& text) {
+        const auto parsed = proto::parse_job_request(text, {}, none, find, 1);
+        if (!parsed) {
+            EXPECT_FALSE(proto::to_json(parsed.error()).empty());
+            return false;
+        }
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
+        EXPECT_TRUE(again && again->echo == parsed->echo) << text;
+        if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
+            Task task = parsed->task;
+            if (parsed->from) {
+                discrete::Origin origin = parsed->from->origin;
+                origin.labels = first->model.labels;
+                task.origin = std::make_shared<const discrete::Origin>(std::move(origin));
+            }
+            const auto finished = run(task, preparations, observer, {});
             EXPECT_TRUE(finished || !finished.error().message.empty());
             made += finished ? 1U : 0U;
         }

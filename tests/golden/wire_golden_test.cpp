@@ -34,7 +34,7 @@ JobRequest request() {
                        "constraints": [{"kind": "fixed", "pieces": ["gate"], "cells": [[3, 1, 0]]}]},
         "priority": 2, "deadline": 30, "tags": {"level": "seven"}})";
     auto parsed = parse_job_request(
-        body, {}, [](const std::string&) { return std::optional(line()); }, 0
+        body, {}, [](const std::string&) { return std::optional(line()); }, nullptr, 0
     );
     return parsed.value();  // throws when it could not be read
 }

@@ -44,7 +44,7 @@ class Oracle:
     def violation(self, constraint):
         """What is wrong, or None."""
         places = {place for place in self.at if self._value(constraint, place) >= 0.5}
-        members = {place for place in places if self.at[place] in constraint["pieces"]}
+        members = {place for place in places if self.at[place] in constraint.get("pieces", [])}
         return getattr(self, "_" + constraint["kind"])(constraint, places, members)
 
     def _value(self, constraint, place):
@@ -136,3 +136,65 @@ class Oracle:
         ends = {tuple(constraint["from"]), tuple(constraint["to"])}
         linked = any(ends <= group for group in self._groups(members))
         return None if linked else "no way between the ends"
+
+    def _moved(self, constraint, place):
+        box = constraint.get("box", {"min": [0, 0, 0], "max": self.size})
+        dx, dz = (2 * place[axis] + 1 - box["min"][axis] - box["max"][axis] for axis in (0, 2))
+        if "translate" in constraint:
+            moved = [p + step for p, step in zip(place, constraint["translate"])]
+            moved = [p % extent if wraps else p
+                     for p, extent, wraps in zip(moved, self.size, self.wraps)]
+        else:
+            if "reflect" in constraint:
+                to = (-dx, dz) if constraint["reflect"] == "x" else (dx, -dz)
+            else:
+                to = (-dx, -dz) if constraint["rotate"] == 2 else (dz, -dx)
+            x, z = ((d - 1 + box["min"][axis] + box["max"][axis]) // 2
+                    for d, axis in zip(to, (0, 2)))
+            moved = [x, place[1], z]
+        return tuple(moved) if tuple(moved) in self.at else None
+
+    def _symmetry(self, constraint, places, members):
+        """For a mirror of pairs, each named once or both ways."""
+        mirror = constraint.get("mirror", {})
+        image = {**{b: a for a, b in mirror.items()}, **mirror}
+        for place in places:
+            to = self._moved(constraint, place)
+            if to in places and self.at[to] != image.get(self.at[place], self.at[place]):
+                return f"{self.at[place]} at {place}, {self.at[to]} at {to}"
+        return None
+
+    def error_of(self, constraint, term, empty=None):
+        """Of a term of an objective or of best_of."""
+        places = {place for place in self.at if self._value(constraint, place) >= 0.5}
+        holds = {place for place in self.at
+                 if self.at[place] in term.get("pieces", []) or
+                 ("pieces" not in term and self.at[place] != empty)}
+        if term["term"] == "height_profile":
+            floors, profile = range(self.size[1]), term["profile"]
+            shares = []
+            for floor in floors:
+                here = {place for place in places if place[1] == floor}
+                shares.append(len(here & holds) / len(here) if here else 0)
+            return sum(abs(share - profile[int((y + 0.5) / len(floors) * len(profile))])
+                       for y, share in zip(floors, shares)) / len(floors)
+        if term["term"] == "shape":
+            return sum(abs((place in holds) - self._value(constraint, place))
+                       for place in self.at) / len(self.at)
+        value = len(places & holds) / (len(places) if term["term"] == "density" else 1)
+        return abs(value - term["target"]) if "target" in term else -value
+
+    def sum_of(self, constraint, empty=None):
+        return sum(term.get("weight", 1) * self.error_of(constraint, term, empty)
+                   for term in constraint["terms"])
+
+    def _objective(self, constraint, places, members):
+        """Of one that has targets that can be reached."""
+        total = self.sum_of(constraint)
+        return None if total < 0.01 else f"the terms come to {total}"
+
+    def _resemblance(self, constraint, places, members):
+        return None
+
+    def _best_of(self, constraint, places, members):
+        return None

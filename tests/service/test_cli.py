@@ -198,6 +198,13 @@ def test_a_request_that_cannot_be_done_tells_every_fault(tmp_path):
         ["list", "--key", "a\r\nX: y"],
         ["submit"],
         ["submit", "--example", "castle", "--request", "a.json"],
+        ["submit", "--from", "1", "--request", "a.json"],
+        ["submit", "--from", ""],
+        ["submit", "--from", "1", "--box", "0,0,0"],
+        ["submit", "--from", "1", "--at", "1x2x3"],
+        ["submit", "--example", "castle", "--box", "0,0,0:1,1,1"],
+        ["submit", "--example", "castle", "--at", "1,2,3"],
+        ["run", "--local", "--from", "1", "-o", "a.glb"],
         ["submit", "--example", "castle", "--size", "40x10"],
         ["submit", "--example", "castle", "--size", "40x10x40x1"],
         ["submit", "--example", "castle", "--seed", "-1"],
@@ -245,6 +252,8 @@ def test_help_tells_the_exit_codes(command):
     text = succeed(command, "--help")
     assert "--json" in text and "--server" in text and "$MODELSYNTH_SERVER" in text
     assert "130  interrupted" in text
+    for option in ("--from JOB", "--box X,Y,Z:X,Y,Z", "--at X,Y,Z"):
+        assert (option in text) == (command in ("submit", "run"))
 
 
 @pytest.mark.parametrize(
@@ -375,6 +384,30 @@ def test_a_refused_request_shows_the_problem(server, tmp_path):
     broken.write_text("{")
     errors = fail(1, "submit", "--request", broken, "--json", server=server.url)
     assert json.loads(errors)["status"] == 400
+
+
+def test_a_job_is_submitted_from_a_finished_one(server, tmp_path):
+    first = submit(server, *SMALL)
+    succeed("follow", first, server=server.url)
+    box = ["--box", "2,0,3:12,6,13"]
+    job = submit(server, "--from", first, *box, "--seed", 8)
+    succeed("follow", job, server=server.url)
+    request = json.loads(get(f"{server.url}/v1/jobs/{job}"))["request"]
+    assert request["from"] == {
+        "job": first, "size": [20, 6, 20], "at": [0, 0, 0],
+        "box": {"min": [2, 0, 3], "max": [12, 6, 13]},
+    }  # fmt: skip
+    assert (request["example"], request["seed"]) == ("castle", 8)
+    out = tmp_path / "grown.glb"
+    report = json.loads(succeed(
+        "run", "--from", first, "--at", "3,0,4", "--size", "24x6x25", "--example", "castle",
+        "-o", out, "--json", server=server.url,
+    ))  # fmt: skip
+    grown = json.loads(get(f"{server.url}/v1/jobs/{report['job']}"))["request"]
+    assert grown["from"]["at"] == [3, 0, 4] and grown["parameters"]["size"] == [24, 6, 25]
+    assert_is_glb(out.read_bytes())
+    errors = fail(1, "submit", "--from", "nonesuch", server=server.url)
+    assert "/from/job" in errors
 
 
 def test_list_shows_jobs_newest_first(server):

@@ -72,6 +72,10 @@ bool is_digest(std::string_view text) {
            text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
+tl::unexpected<StoreError> no_artifact(const std::string& digest) {
+    return tl::unexpected(StoreError{StoreErrorCode::kNotFound, "there is no artifact " + digest});
+}
+
 class FileReader final : public ArtifactStore::Reader {
   public:
     FileReader(Descriptor file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
@@ -164,6 +168,17 @@ Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::put(std::string_view 
     return pin;
 }
 
+Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::pin(const std::string& digest) {
+    if (!is_digest(digest)) {
+        return no_artifact(digest);  // its pin would have a file of that name removed in the end
+    }
+    auto pin = std::make_unique<FilePin>(*this, digest);  // first, as in put()
+    if (!exists(digest)) {
+        return no_artifact(digest);
+    }
+    return pin;
+}
+
 bool FileArtifacts::sync_directories(const std::string& digest) const {
     const fs::path inner = path_of(digest).parent_path();
     return sync_directory(inner) && sync_directory(inner.parent_path()) &&
@@ -203,8 +218,7 @@ Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_vi
 Stored<std::unique_ptr<ArtifactStore::Reader>> FileArtifacts::open(const std::string& digest) {
     Descriptor file(is_digest(digest) ? ::open(path_of(digest).c_str(), O_RDONLY | O_CLOEXEC) : -1);
     if (file.get() < 0) {
-        return tl::unexpected(StoreError{
-            StoreErrorCode::kNotFound, "there is no artifact " + digest});
+        return no_artifact(digest);
     }
     struct stat status = {};
     if (::fstat(file.get(), &status) != 0) {

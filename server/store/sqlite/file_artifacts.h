@@ -18,6 +18,7 @@ class FileArtifacts final : public ArtifactStore {
     FileArtifacts(std::filesystem::path directory, std::filesystem::path temporary);
 
     [[nodiscard]] Stored<std::unique_ptr<Pin>> put(std::string_view bytes) override;
+    [[nodiscard]] Stored<std::unique_ptr<Pin>> pin(const std::string& digest) override;
     [[nodiscard]] Stored<std::unique_ptr<Reader>> open(const std::string& digest) override;
     [[nodiscard]] Stored<std::string> load(const std::string& digest) override;
 

@@ -93,6 +93,9 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) 
             .bind(job.deadline_seconds)
             .bind(job.created)
             .run();
+        if (auto linked = link_artifacts(database, job.id, job.artifacts); !linked) {
+            return tl::unexpected(std::move(linked.error()));
+        }
         const std::uint64_t position = queue_position(database, job.id, job.created);
         append_event(database, job.id, {"queued", proto::queued_fields(position), job.created});
         auto stored = find_job(database, job.id);

@@ -59,6 +59,26 @@ TEST(RequestBody, PutsTheSizeWithTheParametersAsTheyWereWritten) {
     );
 }
 
+TEST(RequestBody, LeavesToAnEarlierJobWhatWasNotGiven) {
+    RequestOptions options;
+    options.from = "01\"ab";
+    EXPECT_EQ(*make_request_body(options), R"({"from":{"job":"01\"ab"}})");
+    options.at = "1,2,3";
+    options.box = "0,0,0:4,5,6";
+    options.size = "10x5x12";
+    options.seed = 7;
+    EXPECT_EQ(
+        *make_request_body(options),
+        R"({"from":{"job":"01\"ab","at":[1,2,3],"box":{"min":[0,0,0],"max":[4,5,6]}},"seed":7,)"
+        R"("parameters":{"size":[10,5,12]}})"
+    );
+    options.example = "castle";
+    options.solver = "other";
+    EXPECT_TRUE(
+        make_request_body(options)->starts_with(R"({"solver":"other","example":"castle","from":{)")
+    );
+}
+
 TEST(RequestBody, RefusesWhatIsNoRequest) {
     const auto refuses = [](auto change) {
         RequestOptions options;
@@ -68,6 +88,23 @@ TEST(RequestBody, RefusesWhatIsNoRequest) {
         return !body && body.error().code == ExitCode::kWrongUsage;
     };
     EXPECT_TRUE(refuses([](RequestOptions& options) { options.size = "4x5"; }));
+    for (const char* const box :
+         {"1,2,3",
+          "0,0,0:",
+          ":1,2,3",
+          "0,0,0:1,2",
+          "0,0,0:1,2,3:",
+          "0,0,-1:1,2,3",
+          "0x0x0:1x2x3"}) {
+        EXPECT_TRUE(refuses([box](RequestOptions& options) {
+            options.from = "a";
+            options.box = box;
+        })) << box;
+    }
+    EXPECT_TRUE(refuses([](RequestOptions& options) {
+        options.from = "a";
+        options.at = "1x2x3";
+    }));
     EXPECT_TRUE(refuses([](RequestOptions& options) { options.parameters = "{"; }));
     EXPECT_TRUE(refuses([](RequestOptions& options) { options.parameters = "{} {}"; }));
     EXPECT_TRUE(refuses([](RequestOptions& options) { options.parameters = "no-such-file"; }));

@@ -33,7 +33,7 @@ std::optional<Example> find_built_in(const std::string& id) {
 }
 
 Parsed<JobRequest> parse(const std::string& body) {
-    return parse_job_request(body, {}, find_built_in, 11);
+    return parse_job_request(body, {}, find_built_in, nullptr, 11);
 }
 
 std::vector<std::string> pointers(const Problem& problem) {

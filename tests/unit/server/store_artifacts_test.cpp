@@ -77,6 +77,7 @@ TEST_P(ArtifactContract, WhatWasNeverStoredIsNotFound) {
           std::string("abc"),
           std::string("../../lock"),
           std::string("ab/cd/../../../../modelsynth.db")}) {
+        EXPECT_EQ(error_of(artifacts().pin(digest)), StoreErrorCode::kNotFound) << digest;
         EXPECT_EQ(error_of(artifacts().open(digest)), StoreErrorCode::kNotFound) << digest;
         EXPECT_EQ(error_of(artifacts().load(digest)), StoreErrorCode::kNotFound) << digest;
     }
@@ -99,6 +100,19 @@ TEST_P(ArtifactContract, WhatNobodyPinsOrLinksGoes) {
     const auto again = value(artifacts().put("content"));
     settle();
     EXPECT_EQ(value(artifacts().load(digest)), "content");
+}
+
+TEST_P(ArtifactContract, ASecondPinKeepsWhatTheFirstOneLetsGo) {
+    auto first = value(artifacts().put("content"));
+    const std::string digest = first->digest();
+    auto second = value(artifacts().pin(digest));
+    EXPECT_EQ(second->digest(), digest);
+    first.reset();
+    settle();
+    EXPECT_EQ(value(artifacts().load(digest)), "content");
+    second.reset();
+    EXPECT_TRUE(eventually([&] { return !artifacts().open(digest); }));
+    EXPECT_EQ(error_of(artifacts().pin(digest)), StoreErrorCode::kNotFound);
 }
 
 TEST_P(ArtifactContract, AReaderKeepsItsBytesWhenTheArtifactGoes) {
@@ -162,6 +176,40 @@ TEST_P(ArtifactContract, PutAndGoAtTheSameTimeLosesNothingThatIsPinned) {
         }
     });
     EXPECT_TRUE(eventually([&] { return !artifacts().open(sha256_hex("comes and goes")); }));
+}
+
+TEST_P(ArtifactContract, WhatAJobIsSubmittedWithStaysWhenTheJobItCameFromGoes) {
+    for (const bool is_erased : {true, false}) {
+        const std::string first = is_erased ? "erased" : "expired";
+        const std::string second = "from " + first;
+        {
+            const auto pin = value(artifacts().put("labels of " + first));
+            const Claim claimed = submit_and_claim(first);
+            value(jobs().finish(claimed.lease, succeeded({{"labels", pin->digest()}})));
+        }
+        const std::string digest = value(jobs().artifact(first, "labels"));
+        NewJob job = new_job(second);
+        job.artifacts = {{"origin", digest}};
+        submit(job);
+        between_steps();
+        if (is_erased) {
+            value(jobs().erase(first));
+        } else {
+            jobs().expire(kNow + 3 + kRetentionMs);
+        }
+        between_steps();
+        settle();
+        EXPECT_EQ(value(jobs().artifact(second, "origin")), digest);
+        EXPECT_EQ(value(artifacts().load(digest)), "labels of " + first);
+        // It outlives the claim, too, and goes with the job.
+        const auto claimed = claim();
+        ASSERT_TRUE(claimed && claimed->lease.job_id == second);
+        value(jobs().finish(claimed->lease, failed()));
+        between_steps();
+        EXPECT_EQ(value(jobs().artifact(second, "origin")), digest);
+        value(jobs().erase(second));
+        EXPECT_TRUE(eventually([&] { return !artifacts().open(digest); }));
+    }
 }
 
 TEST_P(ArtifactContract, LinkAndEraseAtTheSameTimeLeaveNoLinkWithoutItsFile) {

@@ -61,6 +61,29 @@ TEST_P(JobContract, AKnownKeyWithAnotherHashIsAConflict) {
     EXPECT_EQ(listed(), std::vector<std::string>{"a"});
 }
 
+TEST_P(JobContract, AJobThatNeedsWhatIsNotStoredIsNotThere) {
+    {
+        const auto pin = value(artifacts().put("stored"));
+        NewJob job = keyed_job("a", "key", "hash");
+        job.artifacts = {{"one", pin->digest()}, {"two", sha256_hex("never stored")}};
+        EXPECT_EQ(error_of(jobs().submit(job, kNoLimit)), StoreErrorCode::kConflict);
+    }
+    between_steps();
+    EXPECT_EQ(error_of(jobs().find("a")), StoreErrorCode::kNotFound);
+    EXPECT_EQ(error_of(jobs().artifact("a", "one")), StoreErrorCode::kNotFound);
+    EXPECT_EQ(error_of(events().read("a", 0, 10)), StoreErrorCode::kNotFound);
+    EXPECT_FALSE(value(jobs().find_key("key", "hash")));
+}
+
+TEST_P(JobContract, AKnownKeyAnswersWhateverTheJobWouldNeed) {
+    submit(keyed_job("a", "key", "hash"));
+    between_steps();
+    NewJob again = keyed_job("b", "key", "hash");
+    again.artifacts = {{"origin", sha256_hex("gone by now")}};
+    EXPECT_EQ(submit(again).job.id, "a");
+    EXPECT_EQ(error_of(jobs().artifact("a", "origin")), StoreErrorCode::kNotFound);
+}
+
 TEST_P(JobContract, AKeyIsKnownAfterTheJobHasEnded) {
     submit(keyed_job("a", "key", "hash"));
     value(jobs().cancel("a", kNow));

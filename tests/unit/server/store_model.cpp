@@ -65,6 +65,12 @@ Stored<Submitted> StoreModel::submit(const NewJob& job, std::size_t queue_max) {
         return failure(StoreErrorCode::kQueueFull);
     }
     Row row;
+    for (const ArtifactLink& artifact : job.artifacts) {
+        if (!stored_digests_.contains(artifact.digest)) {
+            return failure(StoreErrorCode::kConflict);
+        }
+        row.artifacts.insert({artifact.name, artifact.digest});
+    }
     row.submitted = job;
     row.job.id = job.id;
     row.job.solver = job.solver;

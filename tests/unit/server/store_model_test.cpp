@@ -194,6 +194,11 @@ class Comparison {
         if (below(2) == 0) {
             job.deadline_seconds = static_cast<double>(below(100));
         }
+        for (const char* name : {"origin", "example"}) {
+            if (below(4) == 0) {
+                job.artifacts.push_back({name, any_digest()});
+            }
+        }
         EXPECT_EQ(answer_of(store_.jobs().submit(job, 15)), answer_of(model_.submit(job, 15)));
     }
 
@@ -284,7 +289,8 @@ class Comparison {
             value(store_.events().read(id, below(5), 1)).ended, proto::is_ended(row.job.state)
         );
         EXPECT_EQ(text_of(value(store_.jobs().checkpoint(id))), text_of(row.checkpoint));
-        for (const char* name : {"labels", "nodes.glb", "example", "preview0", "preview1"}) {
+        for (const char* name :
+             {"labels", "nodes.glb", "example", "origin", "preview0", "preview1"}) {
             const auto expected = row.artifacts.find(name);
             const auto digest = store_.jobs().artifact(id, name);
             EXPECT_EQ(digest.has_value(), expected != row.artifacts.end()) << id << ' ' << name;

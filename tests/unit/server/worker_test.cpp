@@ -5,6 +5,7 @@
 
 #include "proto/frame.h"
 #include "proto/job.h"
+#include "server/jobs/job_inputs.h"
 #include "server/jobs/logging_observer.h"
 #include "tests/unit/server/embedded_store.h"
 
@@ -170,6 +171,21 @@ TEST_F(WorkerOnAnEarlierLog, AnotherVersionThatCrashedBeforeItsFirstBlockDoesToo
     run(claim());
     EXPECT_EQ(job("begun").state, proto::JobState::kSucceeded) << job("begun").error;
     EXPECT_EQ(digest("begun"), digest("whole"));
+}
+
+TEST_F(WorkerOnAnEarlierLog, LabelsToStartFromThatAreNoModelEndTheJobAsAFault) {
+    run_whole("whole");
+    auto request = nlohmann::json::parse(kRequest);
+    request["from"] = {{"job", "whole"}, {"size", {16, 6, 16}}};
+    NewJob from = new_job("from");
+    from.request = request.dump();
+    const auto pin = value(store_.artifacts().put("no labels"));
+    from.artifacts = {{kOriginArtifact, pin->digest()}};
+    value(store_.jobs().submit(from, kNoLimit));
+    run(claim());
+    EXPECT_EQ(job("from").state, proto::JobState::kFailed);
+    EXPECT_NE(job("from").error.find("/problems/internal"), std::string::npos);
+    EXPECT_NE(job("from").error.find("damaged"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#include "server/jobs/job_inputs.h"
+
+#include "proto/frame.h"
+#include "server/jobs/store_problem.h"
+
+#include <utility>
+
+namespace modelsynth::server {
+
+Stored<void> InheritedInputs::take(
+    JobStore& jobs, ArtifactStore& artifacts, const std::string& earlier_id
+) {
+    const auto hold = [&](const char* artifact, const char* name) {
+        return jobs.artifact(earlier_id, artifact).and_then([&](const std::string& digest) {
+            return artifacts.pin(digest).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
+                links_.push_back({name, digest});
+                pins_.push_back(std::move(pin));
+            });
+        });
+    };
+    if (auto held = hold("labels", kOriginArtifact); !held) {
+        return held;
+    }
+    auto held = hold(kExampleArtifact, kExampleArtifact);
+    const bool has_none = !held && held.error().code == StoreErrorCode::kNotFound;
+    return has_none ? Stored<void>() : held;
+}
+
+std::vector<ArtifactLink> InheritedInputs::links(const std::string& example_id) const {
+    std::vector<ArtifactLink> links = links_;
+    std::erase_if(links, [&example_id](const ArtifactLink& link) {
+        return link.name == kExampleArtifact && ExampleLibrary::id_of(link.digest) != example_id;
+    });
+    return links;
+}
+
+std::optional<ExampleLibrary::Entry> find_example(
+    JobStore& jobs, ExampleLibrary& examples, const std::string& job_id, const std::string& id
+) {
+    if (auto entry = examples.find(id)) {
+        return entry;
+    }
+    const auto kept = jobs.artifact(job_id, kExampleArtifact);
+    auto example = kept ? examples.load(*kept) : std::nullopt;
+    if (!example) {
+        return std::nullopt;
+    }
+    return ExampleLibrary::Entry{id, false, std::move(*example), *kept};
+}
+
+proto::Parsed<std::shared_ptr<const discrete::Origin>> load_origin(
+    JobStore& jobs, ArtifactStore& artifacts, const std::string& job_id, discrete::Origin origin
+) {
+    const auto bytes =
+        jobs.artifact(job_id, kOriginArtifact).and_then([&artifacts](const std::string& digest) {
+            return artifacts.load(digest);
+        });
+    if (!bytes) {
+        return tl::unexpected(problem_of(bytes.error()));
+    }
+    auto labels = proto::decode_labels(*bytes);
+    if (!labels || labels->size() != origin.size.cell_count()) {
+        return tl::unexpected(
+            proto::make_problem("internal", "the labels that the job starts from are damaged")
+        );
+    }
+    origin.labels = std::move(*labels);
+    return std::make_shared<const discrete::Origin>(std::move(origin));
+}
+
+}  // namespace modelsynth::server
