@@ -392,6 +392,27 @@ TEST(Explanation, TellsThirtyTwoCellsAtMost) {
     EXPECT_TRUE(conflict.is_minimal);
 }
 
+TEST(Explanation, NamesEightCausesAtMost) {
+    Parameters parameters;
+    parameters.size = GridSize{9, 1, 1};
+    for (std::int32_t x = 0; x < 9; ++x) {
+        parameters.constraints.push_back({Fixed{}, {"b"}});
+        parameters.constraints.back().region.cells = {{x, 0, 0}};
+    }
+    for (const std::uint32_t most : {6U, 7U, 8U}) {
+        parameters.constraints.push_back({Count{0, most}, {"b"}});
+        const Error error = make(make_any(), fill_defaults(parameters, make_any()), 1).error();
+        const auto conflict = std::any_cast<Conflict>(error.explanation);
+        EXPECT_EQ(conflict.constraints.size(), most + 2);
+        EXPECT_TRUE(conflict.is_minimal);
+        const std::string last =
+            most == 6 ? "(count of \"b\")" : "and " + std::to_string(most - 6) + " more";
+        EXPECT_NE(error.message.find(last + " cannot hold together"), std::string::npos)
+            << error.message;
+        parameters.constraints.pop_back();
+    }
+}
+
 TEST(Explanation, TellsEightDemandsOnACellAtMost) {
     Parameters parameters;
     parameters.size = GridSize{2, 1, 2};
