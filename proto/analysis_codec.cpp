@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -29,6 +30,14 @@ const char* name_of(Infallibility kind) {
             break;
     }
     return "unknown";
+}
+
+const char* name_of(discrete::SplitMethod method) {
+    return method == discrete::SplitMethod::kRules ? "rules" : "cells";
+}
+
+const char* name_of(discrete::SplitProof proof) {
+    return proof == discrete::SplitProof::kEquation311 ? "equation_3_11" : "region";
 }
 
 OrderedJson write_size(const GridSize& size) {
@@ -56,6 +65,35 @@ class Writer {
                 break;
         }
         return nullptr;
+    }
+
+    // The pieces that several labels stand for, and those that none does; null where no splitting
+    // was found.
+    [[nodiscard]] OrderedJson splitting() const {
+        if (!analysis_.splitting) {
+            return nullptr;
+        }
+        const discrete::Splitting& splitting = *analysis_.splitting;
+        std::map<Label, std::size_t> copies;
+        for (const Label original : splitting.originals) {
+            ++copies[original];
+        }
+        OrderedJson split = OrderedJson::array();
+        for (const auto& [label, count] : copies) {
+            if (count > 1) {
+                split.push_back({{"piece", example_.pieces[label].name}, {"into", count}});
+            }
+        }
+        OrderedJson lost = OrderedJson::array();
+        for_each_label(splitting.lost.words(), [&](Label label) {
+            lost.push_back(example_.pieces[label].name);
+        });
+        return {
+            {"labels", splitting.originals.size()},
+            {"method", name_of(splitting.method)},
+            {"proof", name_of(splitting.proof)},
+            {"split", std::move(split)},
+            {"lost", std::move(lost)}};
     }
 
     [[nodiscard]] OrderedJson warnings() const {
@@ -140,6 +178,7 @@ std::string analysis_json(const Example& example, const std::string& id, const A
     return dump(OrderedJson{
         {"verdict", name_of(discrete.verdict.kind)},
         {"proof", writer.proof()},
+        {"splitting", writer.splitting()},
         {"description", discrete.verdict.description},
         {"labels", discrete_of(example).pieces.size()},
         {"warnings", writer.warnings()},

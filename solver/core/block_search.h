@@ -5,6 +5,7 @@
 #include "solver/core/constraints/constraint_board.h"
 #include "solver/core/label_chooser.h"
 #include "solver/core/random.h"
+#include "solver/core/sat/sat_search.h"
 #include "solver/core/search.h"
 #include "solver/core/search_tally.h"
 #include "solver/core/site_domains.h"
@@ -56,6 +57,9 @@ struct BlockOptions {
     std::optional<Pin> pin = std::nullopt;
     const LabelChooser* chooser = nullptr;    // in place of the weights alone; null: none
     std::span<std::uint32_t> dead_ends = {};  // by site of the part, as of SearchAids
+    // After all attempts, which may be none, CaDiCaL is asked, when there is no board; none: it is
+    // not.
+    std::optional<SatLimits> by_sat = std::nullopt;
 };
 
 // How an attempt at a block goes about it.
@@ -280,7 +284,33 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         }
         result.attempts = options.attempts;
         result.outcome = BlockOutcome::kReverted;
+        if (options.by_sat && options.board == nullptr) {
+            ask_sat(part, model, *options.by_sat, key, stop, result);
+        }
         return result;
+    }
+
+    void ask_sat(
+        const Part& part,
+        std::span<Label> model,
+        const SatLimits& limits,
+        RandomKey key,
+        const std::stop_token& stop,
+        BlockResult& result
+    ) {
+        key.attempt = 0;
+        std::vector<Label> labels(topology_->site_count());
+        const PartWeights weights = {weights_, weight_numbers_};
+        const SatResult found = solve_by_sat(
+            *topology_, relations_, start_, weights, key, limits, stop, std::span<Label>(labels)
+        );
+        if (found.outcome == SatOutcome::kStopped) {
+            result.outcome = BlockOutcome::kStopped;
+        } else if (found.outcome == SatOutcome::kSolved) {
+            part.for_each_site([&](Site inside, Site whole) { model[whole] = labels[inside]; });
+            result.outcome = BlockOutcome::kAccepted;
+            result.solved_by = SolvedBy::kSat;
+        }
     }
 
     // The catalog for such a part; parts of one shape come one after the other.

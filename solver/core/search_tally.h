@@ -13,11 +13,14 @@ enum class SolvedBy : std::uint8_t {
     kBacktracking,  // choices were taken back
     kOtherOrder,    // another order of sites
     kRestart,       // the same order once more, with other random numbers
-    kSat,           // the back end over CaDiCaL, where every attempt failed
+    // Where every attempt at the block failed:
+    kSmallerBlock,  // one or more parts of it
+    kErodedBorder,  // what stands around its border changed as well
+    kSat,           // the back end over CaDiCaL
 };
-inline constexpr std::size_t kSolvedByCount = 5;
+inline constexpr std::size_t kSolvedByCount = 7;
 inline constexpr std::array<const char*, kSolvedByCount> kSolvedByNames = {
-    "first_try", "backtracking", "other_order", "restart", "sat"};
+    "first_try", "backtracking", "other_order", "restart", "smaller_block", "eroded_border", "sat"};
 
 // What became of the blocks of a model so far.
 struct SearchTally {

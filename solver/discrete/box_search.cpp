@@ -56,6 +56,7 @@ BlockResult BoxSearch::modify(
     BlockOptions inner = {options.attempts, options.order, scan, options.board};
     inner.chooser = options.chooser;
     inner.dead_ends = options.dead_ends;
+    inner.by_sat = options.by_sat;
     if (!on_graph_) {
         if (options.pin) {
             const Cell cell = options.pin->cell;

@@ -31,6 +31,7 @@ struct BoxOptions {
     const LabelChooser* chooser = nullptr;  // as of BlockOptions
     // As of BlockOptions, for the whole alone: by cell of it.
     std::span<std::uint32_t> dead_ends = {};
+    std::optional<SatLimits> by_sat = std::nullopt;  // as of BlockOptions
 };
 
 // Makes boxes of a problem's models anew, whatever else has to change with them: the images of

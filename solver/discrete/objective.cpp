@@ -16,7 +16,7 @@ namespace {
 constexpr int kWhole = 255;
 
 // What RandomKey::purpose says of the streams drawn here.
-constexpr std::uint32_t kPurposeKeep = 3;
+constexpr std::uint32_t kPurposeKeep = 5;
 
 LabelSet members_of(const Example& example, const Term& term) {
     if (!term.pieces.empty()) {

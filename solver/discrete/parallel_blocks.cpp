@@ -18,9 +18,19 @@ namespace {
 constexpr std::uint32_t kRunAheadMax = 512;
 
 struct Solved {
-    BlockResult result;
-    std::vector<Label> labels;  // of an accepted block
+    ModifiedBlock block;
+    std::vector<Label> labels;  // of the box that changed, when it was accepted
 };
+
+// What each block may change.
+std::vector<Box> reaches_of(const BlockSolver& solver, std::span<const Box> schedule) {
+    std::vector<Box> reaches;
+    reaches.reserve(schedule.size());
+    for (const Box& block : schedule) {
+        reaches.push_back(solver.reach(block));
+    }
+    return reaches;
+}
 
 class ParallelRun {
   public:
@@ -28,11 +38,13 @@ class ParallelRun {
         const GridSize& size,
         Periodic periodic,
         const ParallelBlocks& blocks,
+        const BlockSolver& solver,
         std::span<const Label> model
     )
         : size_(size),
           blocks_(blocks),
-          queue_(size, periodic, blocks.schedule, blocks.first, kRunAheadMax),
+          reaches_(reaches_of(solver, blocks.schedule)),
+          queue_(size, periodic, reaches_, blocks.first, kRunAheadMax),
           ahead_(model.begin(), model.end()),
           // One more than run ahead: the oldest is being reported while the newest is solved.
           solved_(kRunAheadMax + 1) {}
@@ -55,7 +67,7 @@ class ParallelRun {
     std::size_t lead(
         BlockSolver& own,
         std::span<Label> model,
-        const std::function<void(const Box&, const BlockResult&)>& report
+        const std::function<void(const ModifiedBlock&)>& report
     ) {
         std::size_t reported = blocks_.first;
         for (auto step = queue_.next_step(); step.kind != BlockQueue::Step::Kind::kEnd;
@@ -65,11 +77,10 @@ class ParallelRun {
                 continue;
             }
             const Solved& slot = slot_of(step.block);
-            const Box& block = blocks_.schedule[step.block];
-            if (slot.result.outcome == BlockOutcome::kAccepted) {
-                copy_in(size_, slot.labels, block, model);
+            if (slot.block.result.outcome == BlockOutcome::kAccepted) {
+                copy_in(size_, slot.labels, slot.block.changed, model);
             }
-            report(block, slot.result);
+            report(slot.block);
             ++reported;
         }
         return reported;
@@ -89,19 +100,20 @@ class ParallelRun {
 
     void solve(BlockSolver& solver, std::uint32_t block) {
         Solved& slot = slot_of(block);
-        slot.result = solver.modify(ahead_, blocks_.schedule[block], block, blocks_.attempts);
-        if (slot.result.outcome == BlockOutcome::kStopped) {
+        slot.block = solver.modify(ahead_, blocks_.schedule[block], block, blocks_.attempts);
+        if (slot.block.result.outcome == BlockOutcome::kStopped) {
             queue_.stop();
             return;
         }
-        if (slot.result.outcome == BlockOutcome::kAccepted) {
-            copy_out(size_, ahead_, blocks_.schedule[block], slot.labels);
+        if (slot.block.result.outcome == BlockOutcome::kAccepted) {
+            copy_out(size_, ahead_, slot.block.changed, slot.labels);
         }
         queue_.finish(block);
     }
 
     const GridSize size_;
     const ParallelBlocks& blocks_;
+    const std::vector<Box> reaches_;
     BlockQueue queue_;
     std::vector<Label> ahead_;
     std::vector<Solved> solved_;
@@ -118,10 +130,10 @@ bool modify_in_parallel(
     const ParallelBlocks& blocks,
     std::span<Label> model,
     const std::stop_token& stop,
-    const std::function<void(const Box&, const BlockResult&)>& report
+    const std::function<void(const ModifiedBlock&)>& report
 ) {
     const Problem& problem = preparation.problem();
-    ParallelRun run(problem.size, problem.periodic, blocks, model);
+    ParallelRun run(problem.size, problem.periodic, blocks, own, model);
     std::size_t reported = 0;
     {
         std::vector<std::jthread> helpers;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "solver/core/block_search.h"
 #include "solver/core/grid.h"
 #include "solver/discrete/block_solver.h"
 #include "solver/discrete/preparation.h"
@@ -31,7 +30,7 @@ struct ParallelBlocks {
     const ParallelBlocks& blocks,
     std::span<Label> model,
     const std::stop_token& stop,
-    const std::function<void(const Box&, const BlockResult&)>& report
+    const std::function<void(const ModifiedBlock&)>& report
 );
 
 }  // namespace modelsynth::discrete

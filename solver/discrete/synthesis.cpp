@@ -81,7 +81,7 @@ class Run {
         const Box whole = Box::whole(problem_.size);
         solver_.begin(labels_);
         std::vector<std::uint32_t> dead_ends(labels_.size());
-        const BlockResult result = solver_.modify(labels_, whole, 0, kWholeAttempts, dead_ends);
+        const BlockResult result = solver_.attempt(labels_, whole, 0, kWholeAttempts, dead_ends);
         switch (result.outcome) {
             case BlockOutcome::kAccepted:
                 report(whole, result);
@@ -157,28 +157,28 @@ class Run {
             {schedule, block_index_, attempts, threads},
             labels_,
             stop_,
-            [this](const Box& block, const BlockResult& result) { report(block, result); }
+            [this](const ModifiedBlock& block) { report(block.changed, block.result); }
         );
     }
 
     bool modify_in_turn(std::span<const Box> schedule, std::uint32_t attempts) {
         for (const Box& block : schedule.subspan(block_index_)) {
-            const Box touched = solver_.search().touched(block);
-            if (metropolis_.is_asked_for()) {
-                copy_out(problem_.size, labels_, touched, before_);
-            }
-            BlockResult result = solver_.modify(labels_, block, block_index_, attempts);
+            const bool may_be_declined = metropolis_.is_asked_for();
+            const Box reach = may_be_declined ? solver_.reach(block) : Box{};
+            copy_out(problem_.size, labels_, reach, before_);
+            ModifiedBlock modified = solver_.modify(labels_, block, block_index_, attempts);
+            BlockResult& result = modified.result;
             if (result.outcome == BlockOutcome::kStopped) {
                 return false;
             }
-            if (result.outcome == BlockOutcome::kAccepted && metropolis_.is_asked_for() &&
-                !metropolis_.keeps(block_index_, touched, before_, labels_)) {
-                copy_in(problem_.size, before_, touched, labels_);
-                solver_.take_back(labels_, block);
+            if (result.outcome == BlockOutcome::kAccepted && may_be_declined &&
+                !metropolis_.keeps(block_index_, reach, before_, labels_)) {
+                copy_in(problem_.size, before_, reach, labels_);
+                solver_.take_back(labels_, reach);
                 result.outcome = BlockOutcome::kReverted;
                 ++stats_.blocks.declined;
             }
-            report(touched, result);
+            report(modified.changed, result);
         }
         return true;
     }
@@ -213,7 +213,7 @@ class Run {
     const std::stop_token& stop_;
     BlockSolver solver_;
     Metropolis metropolis_;
-    std::vector<Label> before_;  // of the block in hand, where it may be taken back
+    std::vector<Label> before_;  // within reach of the block in hand, where it may be taken back
     std::vector<Label> labels_;
     std::uint32_t block_index_ = 0;
     std::uint32_t blocks_total_ = 0;

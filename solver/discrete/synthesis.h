@@ -19,9 +19,6 @@ struct Synthesis {
     SynthesisStats stats;
 };
 
-// More blocks than this are refused.
-inline constexpr std::size_t kBlockCountMax = 1'000'000;
-
 // A model of the size asked for in which any two neighbours are neighbours in the example
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
 // With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;

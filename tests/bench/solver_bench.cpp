@@ -16,6 +16,7 @@
 
 #include "proto/example_codec.h"
 #include "solver/core/block_schedule.h"
+#include "solver/discrete/block_solver.h"
 #include "solver/discrete/synthesis.h"
 #include "solver/examples/built_in.h"
 #include "tests/bench/ac4_peer.h"

@@ -2,6 +2,7 @@
 
 #include "solver/core/block_schedule.h"
 #include "solver/core/catalog.h"
+#include "solver/discrete/block_solver.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/bench/ac4_peer.h"
 #include "tests/support/consistency_checker.h"

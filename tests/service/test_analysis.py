@@ -32,6 +32,8 @@ def test_a_built_in_example_is_analysed(server, example_id):
     names = {piece["name"] for piece in example["pieces"]}
     assert found["verdict"] in ("infallible", "fallible", "unknown")
     assert found["labels"] == len(names)
+    # They are too large to be split in the time.
+    assert found["splitting"] is None
     for warning in found["warnings"]:
         assert set(warning) == {"code", "message", "pieces"}
         assert set(warning["pieces"]) <= names and warning["message"]
@@ -99,6 +101,26 @@ def test_a_counterexample_has_no_completion(server):
         name = placed.pop(place)
         assert completes({}, 0), place
         placed[place] = name
+
+
+# Every 2 has a 6 two cells to its right, joined to it by one of two paths (Merrell's thesis, Fig.
+# 3.5): which of them a 0 is within tells it apart from the others. Rows from the bottom.
+PATHS = {"kind": "discrete", "name": "paths", "pieces": [{"name": str(n)} for n in range(9)],
+         "size": [4, 1, 10],
+         "cells": [int(row[z]) for z in range(10)
+                   for row in ("1216112161", "0345007080", "0000003450", "0000000000")]}
+
+
+def test_a_fallible_example_is_told_how_to_split_its_labels(server):
+    found = analysis(server, uploaded(server, PATHS))
+    assert found["verdict"] == "fallible"
+    assert found["splitting"] == {
+        "labels": 11, "method": "rules", "proof": "equation_3_11",
+        "split": [{"piece": "0", "into": 2}, {"piece": "1", "into": 2}], "lost": []}
+
+
+def test_what_is_infallible_is_not_split(server):
+    assert analysis(server, uploaded(server, FREE))["splitting"] is None
 
 
 def test_labels_to_be_warned_of_are_named(server):

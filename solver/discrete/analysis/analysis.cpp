@@ -12,6 +12,8 @@ namespace {
 // Work for examples of up to 128 labels; propagation takes longer with more, so there is less of
 // it.
 constexpr std::uint64_t kVerdictSteps = 300'000;
+constexpr std::uint64_t kSplittingSteps = 15'000;
+constexpr std::size_t kSplitLabelsMax = 512;  // beyond, memory would count too
 constexpr std::uint64_t kPlacements = 5'000;
 constexpr std::uint64_t kSuccessCells = 2'000'000;
 constexpr std::uint64_t kCountSteps = 500'000;
@@ -24,6 +26,14 @@ std::vector<GridSize> counted_sizes(const Transitions& transitions) {
         sizes.push_back({along(0), along(1), along(2)});
     }
     return sizes;
+}
+
+// Small examples are split, if they can be; large ones would take seconds.
+SplittingOptions splitting_options(std::uint64_t steps_max) {
+    SplittingOptions options;
+    options.steps_max = steps_max;
+    options.labels_per_label = 2;
+    return options;
 }
 
 }  // namespace
@@ -41,6 +51,15 @@ Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {
     if (!verdict) {
         return tl::unexpected(std::move(verdict.error()));
     }
+    std::optional<Splitting> splitting;
+    if (verdict->kind != Infallibility::kInfallible && example.pieces.size() <= kSplitLabelsMax) {
+        auto found =
+            find_splitting(example, transitions, splitting_options(share(kSplittingSteps)), stop);
+        if (!found) {
+            return tl::unexpected(std::move(found.error()));
+        }
+        splitting = std::move(*found);
+    }
     auto facts = find_label_facts(example, parameters, stop, share(kPlacements));
     if (!facts) {
         return tl::unexpected(std::move(facts.error()));
@@ -51,7 +70,8 @@ Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {
     if (!success) {
         return tl::unexpected(std::move(success.error()));
     }
-    Analysis analysis = {std::move(*verdict), std::move(*facts), {}, std::move(*success), {}};
+    Analysis analysis = {
+        std::move(*verdict), std::move(splitting), std::move(*facts), {}, std::move(*success), {}};
     analysis.warnings = list_warnings(example, analysis.facts);
     ModelCountLimit limit;
     limit.steps_max = share(kCountSteps);

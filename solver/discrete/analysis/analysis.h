@@ -4,11 +4,13 @@
 #include "solver/core/result.h"
 #include "solver/discrete/analysis/infallibility.h"
 #include "solver/discrete/analysis/label_facts.h"
+#include "solver/discrete/analysis/label_splitting.h"
 #include "solver/discrete/analysis/model_count.h"
 #include "solver/discrete/analysis/success_curve.h"
 #include "solver/discrete/analysis/warnings.h"
 #include "solver/discrete/example.h"
 
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct CountedSize {
 // size and weights.
 struct Analysis {
     InfallibilityVerdict verdict;
+    std::optional<Splitting> splitting;  // looked for where the verdict is not infallible
     LabelFacts facts;
     std::vector<Warning> warnings;
     std::vector<SuccessPoint> success;

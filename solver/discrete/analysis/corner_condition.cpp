@@ -18,8 +18,11 @@ RelationId back(std::size_t axis) { return static_cast<RelationId>(2 * axis + 1)
 
 class Corners {
   public:
-    Corners(const Transitions& transitions, Work& work)
-        : relations_(transitions.relations), labels_(transitions.labels), work_(work) {
+    Corners(const Transitions& transitions, Work& work, OpenCube* open_cube)
+        : relations_(transitions.relations),
+          labels_(transitions.labels),
+          work_(work),
+          open_cube_(open_cube) {
         for_each_label(labels_.words(), [this](Label label) { listed_.push_back(label); });
         for (std::size_t axis = 0; axis < transitions.open.size(); ++axis) {
             if (transitions.open[axis]) {
@@ -94,12 +97,29 @@ class Corners {
         return ProofOutcome::kProved;
     }
 
+    // The labels that may be at the far end of `second` from a label that has `end` at the far end
+    // of `first`: those that may stand with it in a cube.
+    [[nodiscard]] std::vector<Label> partners(Label end, RelationId first, RelationId second)
+        const {
+        LabelSet set(relations_.label_count());
+        for_each_label(row(relations_.reverse(first), end), [&](Label common) {
+            if (labels_.contains(common)) {
+                for_each_label(row(second, common), [&](Label partner) { set.insert(partner); });
+            }
+        });
+        set &= labels_;
+        std::vector<Label> list;
+        for_each_label(set.words(), [&](Label label) { list.push_back(label); });
+        return list;
+    }
+
     // The three neighbours of a cube's last corner, that leave it no label though they may stand
     // together; each named by the two axes along which it is the farther.
     ProofOutcome check_cubes() {
         for (const Label xy : listed_) {
-            for (const Label xz : listed_) {
-                for (const Label yz : listed_) {
+            const std::vector<Label> with_y = partners(xy, onwards(0), onwards(2));
+            for (const Label xz : partners(xy, onwards(1), onwards(2))) {
+                for (const Label yz : with_y) {
                     if (!work_.take()) {
                         return ProofOutcome::kNoWork;
                     }
@@ -134,6 +154,7 @@ class Corners {
                     if (relations_.allows(onwards(0), z, xz) &&
                         relations_.allows(onwards(1), z, yz) &&
                         meet({row(back(0), x), row(back(1), y), row(back(2), z)})) {
+                        tell({0, x, y, z, xy, xz, yz});
                         return ProofOutcome::kNotProved;
                     }
                 }
@@ -142,17 +163,33 @@ class Corners {
         return ProofOutcome::kProved;
     }
 
+    void tell(OpenCube cube) const {
+        if (open_cube_ == nullptr) {
+            return;
+        }
+        for (const Label origin : listed_) {
+            if (relations_.allows(onwards(0), origin, cube.x) &&
+                relations_.allows(onwards(1), origin, cube.y) &&
+                relations_.allows(onwards(2), origin, cube.z)) {
+                cube.origin = origin;
+                break;
+            }
+        }
+        *open_cube_ = cube;
+    }
+
     const Relations& relations_;
     const LabelSet& labels_;
     Work& work_;
+    OpenCube* open_cube_;
     std::vector<Label> listed_;
     std::vector<std::size_t> axes_;
 };
 
 }  // namespace
 
-ProofOutcome check_corners(const Transitions& transitions, Work& work) {
-    return Corners(transitions, work).check();
+ProofOutcome check_corners(const Transitions& transitions, Work& work, OpenCube* open_cube) {
+    return Corners(transitions, work, open_cube).check();
 }
 
 }  // namespace modelsynth::discrete

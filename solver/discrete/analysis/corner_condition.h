@@ -1,9 +1,22 @@
 #pragma once
 
+#include "solver/core/label_set.h"
 #include "solver/discrete/analysis/transitions.h"
 #include "solver/discrete/analysis/work.h"
 
 namespace modelsynth::discrete {
+
+// Seven corners of a cube that leave no label for the eighth; each is named by the axes along which
+// it is the farther.
+struct OpenCube {
+    Label origin = 0;
+    Label x = 0;
+    Label y = 0;
+    Label z = 0;
+    Label xy = 0;
+    Label xz = 0;
+    Label yz = 0;
+};
 
 // Eq. 3.11 of the thesis (3.3.7) as a test on the transition matrices: whether every corner can be
 // closed. For any two axes, here x and y,
@@ -19,7 +32,10 @@ namespace modelsynth::discrete {
 // the cells before it along each axis: what is filled can always be gone on with. Arc consistency
 // never offers a label that the filled neighbours forbid, so Algorithm 3.1 does not fail.
 //
+// Where only a cube is in the way, `open_cube` is told of it, if it is given.
 // Cost: O(labels^2) steps in the plane, O(labels^3) in space and much less as a rule. Thread-safe.
-[[nodiscard]] ProofOutcome check_corners(const Transitions& transitions, Work& work);
+[[nodiscard]] ProofOutcome check_corners(
+    const Transitions& transitions, Work& work, OpenCube* open_cube = nullptr
+);
 
 }  // namespace modelsynth::discrete

@@ -170,6 +170,24 @@ Result<InfallibilityVerdict> judge_infallibility(
     return verdict;
 }
 
+bool is_proved_infallible(const Example& example, std::uint64_t steps_max) {
+    const bool is_free =
+        std::all_of(example.boundary.begin(), example.boundary.end(), [](const SideBoundary& side) {
+            return side.kind == BoundaryKind::kFree;
+        });
+    if (!is_free) {
+        return false;
+    }
+    const Transitions transitions = read_transitions(example);
+    if (transitions.open_count() <= 1) {
+        return true;
+    }
+    Work work(steps_max, {});
+    const GridSize region = smallest_region(transitions.open);
+    return check_corners(transitions, work) == ProofOutcome::kProved ||
+           prove_by_region(transitions, region, work) == ProofOutcome::kProved;
+}
+
 std::string describe(const Counterexample& counterexample, const Example& example) {
     const auto text = [&example](const PlacedLabel& placed) {
         return "\"" + example.pieces[placed.label].name + "\" at " + text_of(placed.cell);

@@ -62,6 +62,19 @@ struct InfallibilityOptions {
     const Transitions& transitions, const InfallibilityOptions& options, const std::stop_token& stop
 );
 
+// Whether it is proved, with little work, that models of an example are made whole in one pass
+// without a dead end: by the example's own boundary, which must leave all sides free, by Eq. 3.11
+// or by the smallest region.
+//
+// What true covers: the sizes of InfallibilityVerdict, with all sides free, nothing fixed and no
+// constraints, and with no label removed by a weight of 0 that the example does not remove; the
+// whole at once, its cells labelled in the order of column_order(). Nothing else is covered:
+// periodic sides, sides with pieces of their own, blocks and other orders may come to a dead end.
+// False says nothing.
+// Cost: reading the transitions, and steps_max steps at most: a few milliseconds for a hundred
+//       labels. Thread-safe.
+[[nodiscard]] bool is_proved_infallible(const Example& example, std::uint64_t steps_max = 20'000);
+
 // What the core of a counterexample is, with the names of the example's pieces: one sentence.
 [[nodiscard]] std::string describe(const Counterexample& counterexample, const Example& example);
 

@@ -252,4 +252,8 @@ ProofOutcome prove_by_region(const Transitions& transitions, const GridSize& reg
     return ProofOutcome::kProved;
 }
 
+GridSize smallest_region(const std::array<bool, 3>& open) {
+    return {open[0] ? 2 : 1, open[1] ? 2 : 1, open[2] ? 2 : 1};
+}
+
 }  // namespace modelsynth::discrete

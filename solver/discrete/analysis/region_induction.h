@@ -4,6 +4,8 @@
 #include "solver/discrete/analysis/transitions.h"
 #include "solver/discrete/analysis/work.h"
 
+#include <array>
+
 namespace modelsynth::discrete {
 
 // The automated induction of the thesis (3.3.7, Theorem 3.3.6, Algorithms 3.6 and 3.7): tries to
@@ -35,5 +37,8 @@ namespace modelsynth::discrete {
 [[nodiscard]] ProofOutcome prove_by_region(
     const Transitions& transitions, const GridSize& region, Work& work
 );
+
+// The smallest region there is: two cells along every open axis.
+[[nodiscard]] GridSize smallest_region(const std::array<bool, 3>& open);
 
 }  // namespace modelsynth::discrete
