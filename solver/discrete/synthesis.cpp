@@ -4,6 +4,7 @@
 #include "solver/discrete/best_of.h"
 #include "solver/discrete/block_solver.h"
 #include "solver/discrete/box_labels.h"
+#include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/explanation/conflict.h"
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
@@ -96,7 +97,7 @@ class Run {
         if (!settled) {
             return tl::unexpected(std::move(settled.error()));
         }
-        if (!*settled) {
+        if (!*settled || make_board(problem_, problem_.member_rules)->find_violated(**settled)) {
             return tl::unexpected(Error{
                 ErrorCode::kGaveUp,
                 "no model was found in " + std::to_string(kWholeAttempts) +

@@ -82,10 +82,7 @@ Result<std::optional<std::vector<Label>>> settle_by_sat(
         case SatOutcome::kStopped:
             return tl::unexpected(Error{ErrorCode::kCancelled, "stopped", {}});
         case SatOutcome::kSolved:
-            if (problem.member_rules.empty()) {
-                return std::optional(std::move(whole.labels));
-            }
-            break;
+            return std::optional(std::move(whole.labels));
         case SatOutcome::kGaveUp:
             break;
     }

@@ -23,8 +23,8 @@ struct WholeBySat {
     const Problem& problem, std::uint64_t seed, const std::stop_token& stop
 );
 
-// The last word on a whole that the search did not find: its labels, or nothing when that is not
-// known either, as where there are member rules.
+// The last word on a whole that the search did not find: its labels, which need not keep to the
+// member rules, or nothing when it stays unknown whether there are any.
 // Fails: kContradiction when it is proved that there are none, kCancelled.
 [[nodiscard]] Result<std::optional<std::vector<Label>>> settle_by_sat(
     const Problem& problem, std::uint64_t seed, const std::stop_token& stop

@@ -208,6 +208,18 @@ def test_an_example_that_cannot_fill_a_size_is_to_blame_by_itself(server):
                                  "origin": False, "cells": [], "minimal": True}
 
 
+def test_what_is_kept_of_an_earlier_model_may_be_to_blame(server):
+    first = make_job(server, {"boundary": {"bottom": "red"}}, example=ANY)
+    error = fail(server, "contradiction", {"boundary": {"bottom": "free"}, "constraints": [
+        {"kind": "count", "pieces": ["red"], "max": 3}]}, example=ANY,
+        **{"from": {"job": first["id"], "cells": [[0, 0, 0]]}})
+    conflict = error["conflict"]
+    assert conflict["origin"] is True and conflict["minimal"] is True
+    assert [one["index"] for one in conflict["constraints"]] == [0] and not conflict["sides"]
+    assert len(conflict["cells"]) == 4
+    assert "the model that this one starts from" in error["detail"]
+
+
 # --- what only CaDiCaL decides
 
 # Every attempt of the search fails at these, whatever the seed.

@@ -182,6 +182,12 @@ class TinyOracle {
         return true;
     }
 
+    static bool is_of_single_cells(const discrete::Rule& rule) {
+        return std::holds_alternative<discrete::Fixed>(rule) ||
+               std::holds_alternative<discrete::Forbidden>(rule) ||
+               std::holds_alternative<discrete::Probability>(rule);
+    }
+
     bool can_go_on(std::vector<Label>& model) {
         if (model.size() == size_.cell_count()) {
             const ConstraintOracle oracle(example_, size_, periodic_, model);
@@ -189,7 +195,7 @@ class TinyOracle {
                 parameters_.constraints.begin(),
                 parameters_.constraints.end(),
                 [&](const discrete::Constraint& constraint) {
-                    return !discrete::is_member_rule(constraint.rule) ||
+                    return is_of_single_cells(constraint.rule) ||
                            !oracle.find_violation(constraint);
                 }
             );

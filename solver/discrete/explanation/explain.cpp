@@ -30,6 +30,7 @@ constexpr std::uint64_t kWholesMin = 8;
 // Cells that a person can look at.
 constexpr std::size_t kCellsMax = 32;
 constexpr std::size_t kCellsInWordsMax = 3;
+constexpr std::size_t kCausesInWordsMax = 8;
 constexpr std::size_t kDemandsMax = 8;
 
 class Explainer {
@@ -170,6 +171,10 @@ class Explainer {
     [[nodiscard]] std::vector<std::string> names_of(std::span<const Cause> causes) const {
         std::vector<std::string> names;
         for (const Cause& cause : causes) {
+            if (names.size() == kCausesInWordsMax) {
+                names.push_back(std::to_string(causes.size() - kCausesInWordsMax) + " more");
+                break;
+            }
             names.push_back(name_cause(example_, parameters_, cause));
         }
         return names;
@@ -188,7 +193,7 @@ class Explainer {
     ) {
         std::string text = "no model of this size exists: ";
         const std::vector<std::string> names = names_of(causes);
-        text += names.empty()       ? "the pieces of the example do not fit together so far"
+        text += names.empty()       ? "the pieces of the example cannot fill it"
                 : names.size() == 1 ? names.front() + " cannot hold"
                                     : join_words(names) + " cannot hold together";
         std::vector<std::string> cells;

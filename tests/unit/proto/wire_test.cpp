@@ -4,6 +4,7 @@
 #include "proto/job_request.h"
 #include "proto/problem.h"
 #include "proto/timestamp.h"
+#include "solver/discrete/explanation/conflict.h"
 #include "solver/examples/built_in.h"
 
 #include <gtest/gtest.h>
@@ -219,6 +220,47 @@ TEST(Tally, ComesBackFromItsTextAndNothingElseDoes) {
           "[\"1\",0,0,0,0,0]"}) {
         EXPECT_FALSE(decode_tally(text)) << text;
     }
+}
+
+discrete::Conflict conflict_at_a_cell_of(std::size_t labels) {
+    discrete::Conflict conflict;
+    conflict.sides = {"bottom"};
+    conflict.constraints = {{2, "count"}};
+    conflict.cells = {{{1, 2, 3}, std::vector<std::string>(labels, "a")}};
+    conflict.is_minimal = true;
+    return conflict;
+}
+
+TEST(Explanation, OfAContradictionBecomesItsConflict) {
+    Error error = {ErrorCode::kContradiction, "why", {}, conflict_at_a_cell_of(1)};
+    EXPECT_EQ(
+        to_json(problem_of(error)),
+        R"({"type":"/problems/contradiction","title":"No such model exists","status":422,)"
+        R"("detail":"why","conflict":{"sides":["bottom"],"constraints":[{"index":2,)"
+        R"("kind":"count"}],"periodic":[],"removed":[],"origin":false,)"
+        R"("cells":[{"cell":[1,2,3],"labels":["a"]}],"minimal":true}})"
+    );
+}
+
+TEST(Explanation, ListsOnlySoManyLabelsOfACell) {
+    const auto json_of = [](std::size_t labels) {
+        return to_json(
+            problem_of({ErrorCode::kContradiction, "why", {}, conflict_at_a_cell_of(labels)})
+        );
+    };
+    EXPECT_EQ(json_of(64).find("more"), std::string::npos);
+    EXPECT_NE(json_of(65).find(R"("a"],"more":1})"), std::string::npos);
+    EXPECT_EQ(json_of(65).size(), json_of(64).size() + std::string(R"(,"more":1)").size());
+}
+
+TEST(Explanation, OfASearchThatGaveUpBecomesItsHottestCells) {
+    const Error error = {
+        ErrorCode::kGaveUp, "why", {}, discrete::DeadEnds{{{{4, 0, 1}, 7}, {{0, 0, 0}, 2}}}};
+    const std::string json = to_json(problem_of(error));
+    EXPECT_NE(
+        json.find(R"("hottest":[{"cell":[4,0,1],"times":7},{"cell":[0,0,0],"times":2}])"),
+        std::string::npos
+    ) << json;
 }
 
 }  // namespace
