@@ -1,7 +1,9 @@
 // Times synthesis in the plane and prints a table: sets of square tiles on 100 x 100 cells, whole
 // by every order and in blocks, and overlapping patterns of small images on 48 x 48.
 //
-//   planar_bench [--seeds N] [--only NAME] [--peer no]
+//   planar_bench [--seeds N] [--only NAME] [--how HOW] [--peer no]
+//
+// NAME and HOW as printed in the table.
 //
 // "median" and "max" are over the seeds, after a first model that prepares what they have in
 // common. "attempts" is the mean at a block, or at the whole; "failed" counts whole models that
@@ -40,6 +42,7 @@ constexpr std::uint32_t kPeerAttempts = 10;
 
 struct Options {
     std::string only;
+    std::string how;
     int seeds = 20;
     bool has_peer = true;
 };
@@ -201,7 +204,9 @@ void measure_and_print(const std::vector<Row>& rows, const Options& options) {
         peer = measure_peer(rows.front(), options.seeds);
     }
     for (const Row& row : rows) {
-        print(row, measure_ours(row, options.seeds), peer);
+        if (options.how.empty() || options.how == name_of(row)) {
+            print(row, measure_ours(row, options.seeds), peer);
+        }
     }
 }
 
@@ -214,6 +219,8 @@ Options parse_options(int argc, char** argv) {
             options.seeds = std::max(1, std::atoi(argv[i + 1]));
         } else if (option == "--only") {
             options.only = value;
+        } else if (option == "--how") {
+            options.how = value;
         } else if (option == "--peer") {
             options.has_peer = value != "no";
         }
