@@ -77,16 +77,41 @@ void read_weights(const Value& value, const RequestLimits& limits, Parameters& p
     parameters.weights = std::move(list);
 }
 
-const char* order_name(Order order) {
-    switch (order) {
-        case Order::kScan:
-            return "scan";
-        case Order::kMinEntropy:
-            return "min_entropy";
-        case Order::kRandom:
-            return "random";
-    }
-    return "scan";
+// The names of orders; "scan" is by columns, the others by the axes from the slowest to the
+// fastest.
+struct NamedOrder {
+    const char* name;
+    discrete::CellOrder order;
+};
+
+constexpr std::array<NamedOrder, 11> kOrders = {{
+    {"scan", {Order::kScan}},
+    {"min_entropy", {Order::kMinEntropy}},
+    {"random", {Order::kRandom}},
+    {"fewest_labels", {Order::kFewestLabels}},
+    {"growth", {Order::kGrowth}},
+    {"auto", {Order::kScan, discrete::kColumns, true}},
+    {"scan_xyz", {Order::kScan, {0, 1, 2}}},
+    {"scan_yxz", {Order::kScan, {1, 0, 2}}},
+    {"scan_yzx", {Order::kScan, {1, 2, 0}}},
+    {"scan_zxy", {Order::kScan, {2, 0, 1}}},
+    {"scan_zyx", {Order::kScan, {2, 1, 0}}},
+}};
+
+discrete::CellOrder read_order(const Value& value) {
+    std::array<const char*, kOrders.size()> names = {};
+    std::transform(kOrders.begin(), kOrders.end(), names.begin(), [](const NamedOrder& order) {
+        return order.name;
+    });
+    return kOrders.at(value.one_of(names).value_or(0)).order;
+}
+
+const char* order_name(const discrete::CellOrder& order) {
+    const auto named = std::find_if(kOrders.begin(), kOrders.end(), [&](const NamedOrder& one) {
+        return one.order == order;
+    });
+    check(named != kOrders.end(), "an order without a name");
+    return named->name;
 }
 
 OrderedJson write_blocks(const std::optional<discrete::Blocks>& blocks) {
@@ -170,8 +195,7 @@ Parameters read_parameters(const Value& value, const RequestLimits& limits, Para
         sides.finish();
     }
     if (const auto order = reader.optional("order")) {
-        constexpr std::array<Order, 3> kOrders = {Order::kScan, Order::kMinEntropy, Order::kRandom};
-        parameters.order = kOrders.at(order->one_of({"scan", "min_entropy", "random"}).value_or(0));
+        parameters.order = read_order(*order);
     }
     if (const auto weights = reader.optional("weights")) {
         read_weights(*weights, limits, parameters);

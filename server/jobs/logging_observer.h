@@ -20,7 +20,7 @@ namespace modelsynth::server {
 
 // Part of what a job's log and model depend on; a change of the solver or of a built-in example
 // that changes models must change it.
-inline constexpr const char* kSolverVersion = "discrete-3";
+inline constexpr const char* kSolverVersion = "discrete-4";
 
 // What the store knows of a job that was begun before: where its solving goes on from, and the
 // blocks that were logged after that, which are solved again and not logged again.

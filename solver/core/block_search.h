@@ -9,6 +9,7 @@
 #include "solver/core/search.h"
 #include "solver/core/search_tally.h"
 #include "solver/core/site_domains.h"
+#include "solver/core/site_order.h"
 #include "solver/core/site_weights.h"
 #include "solver/core/topology.h"
 
@@ -79,6 +80,12 @@ struct AttemptPlan {
         return {true, {rung == 0 ? 0 : std::min(kBacktracksMax, 2U << (2 * rung))}};
     }
     return {false, {std::min(kBacktracksMax, 32U << (2 * rung))}};
+}
+
+// The order of the even attempts.
+[[nodiscard]] constexpr Order other_order(Order order) {
+    const bool is_by_openness = order == Order::kMinEntropy || order == Order::kFewestLabels;
+    return is_by_openness ? Order::kScan : Order::kMinEntropy;
 }
 
 // What RandomKey::purpose says of the streams drawn here.
@@ -396,25 +403,22 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     ) {
         RandomStream random(key);
         const PartWeights weights = {weights_, weight_numbers_};
-        const auto with = [&](auto picker) {
-            const SearchAids aids = {options.board, chooser, options.dead_ends};
-            Search search(*catalog_, picker, weights, aids, random, stop);
-            const SearchOutcome outcome = search.run(plan.budget);
-            backtracks += search.backtracks();
-            return outcome;
-        };
-        const Order other = options.order == Order::kMinEntropy ? Order::kScan : Order::kMinEntropy;
-        switch (plan.is_other_order ? other : options.order) {
-            case Order::kScan:
-                return with(ScanPicker(options.scan));
-            case Order::kRandom: {
-                const std::vector<Site> shuffled = shuffle(random);
-                return with(ScanPicker(shuffled));
+        const Order order = plan.is_other_order ? other_order(options.order) : options.order;
+        const SearchAids aids = {options.board, chooser, options.dead_ends};
+        return with_picker(
+            order,
+            *catalog_,
+            *topology_,
+            options.scan,
+            weights,
+            random,
+            [&](auto picker) {
+                Search search(*catalog_, picker, weights, aids, random, stop);
+                const SearchOutcome outcome = search.run(plan.budget);
+                backtracks += search.backtracks();
+                return outcome;
             }
-            case Order::kMinEntropy:
-                return with(EntropyPicker(*catalog_, weights, random));
-        }
-        return SearchOutcome::kFailed;
+        );
     }
 
     void number_weights(const Part& part) {
@@ -425,15 +429,6 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         part.for_each_site([&](Site inside, Site whole) {
             weight_numbers_[inside] = weights_.number(whole);
         });
-    }
-
-    std::vector<Site> shuffle(RandomStream& random) const {
-        std::vector<Site> sites(catalog_->site_count());
-        std::iota(sites.begin(), sites.end(), Site{0});
-        for (std::size_t left = sites.size(); left > 1; --left) {
-            std::swap(sites[left - 1], sites[random.below(static_cast<std::uint32_t>(left))]);
-        }
-        return sites;
     }
 
     void write(const Part& part, std::span<Label> model) const {

@@ -18,9 +18,11 @@ namespace modelsynth {
 
 // Which site is labelled next.
 enum class Order : std::uint8_t {
-    kScan,        // in a given order, column by column for a grid
-    kMinEntropy,  // where the choice is least open, ties at random
-    kRandom,      // anywhere
+    kScan,          // in a given order, column by column for a grid
+    kMinEntropy,    // where the choice is least open by the weights, ties at random
+    kFewestLabels,  // where the fewest labels are left, ties at random
+    kRandom,        // anywhere
+    kGrowth,        // beside what is decided from the beginning, or one site, and so on
 };
 
 enum class SearchOutcome : std::uint8_t { kSolved, kFailed, kStopped };
@@ -56,14 +58,20 @@ class ScanPicker {
     std::size_t position_ = 0;
 };
 
-// Hands out the site of least entropy; noise decides between equal ones.
-class EntropyPicker {
+// How open the choice at a site is.
+enum class Openness : std::uint8_t { kEntropy, kLabelCount };
+
+// Hands out the site whose choice is least open; noise decides between equal ones.
+class LeastOpenPicker {
   public:
     static constexpr bool kFollowsChanges = true;
 
     template <class CatalogType>
-    EntropyPicker(CatalogType& catalog, const PartWeights& weights, RandomStream& random)
-        : weights_(weights),
+    LeastOpenPicker(
+        CatalogType& catalog, const PartWeights& weights, RandomStream& random, Openness openness
+    )
+        : openness_(openness),
+          weights_(weights),
           noise_(catalog.site_count()),
           round_of_(catalog.site_count()),
           keys_(catalog.site_count()) {
@@ -103,11 +111,18 @@ class EntropyPicker {
         const auto labels = catalog.labels(site);
         keys_.set(
             site,
-            has_several(labels)
-                ? std::uint64_t{weights_.at(site).entropy(labels)} << 32 | noise_[site]
-                : LeastKey::kNoKey
+            has_several(labels) ? std::uint64_t{openness(site, labels)} << 32 | noise_[site]
+                                : LeastKey::kNoKey
         );
     }
+
+    template <class Labels>
+    [[nodiscard]] std::uint32_t openness(Site site, const Labels& labels) const {
+        return openness_ == Openness::kEntropy ? weights_.at(site).entropy(labels)
+                                               : static_cast<std::uint32_t>(count_labels(labels));
+    }
+
+    Openness openness_;
 
     PartWeights weights_;
     std::vector<std::uint32_t> noise_;

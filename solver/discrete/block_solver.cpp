@@ -80,7 +80,7 @@ BlockResult BlockSolver::attempt(
     if (stop_.stop_requested()) {
         return {BlockOutcome::kStopped};
     }
-    BoxOptions options = {attempts, preparation_.parameters().order, board_.get()};
+    BoxOptions options = {attempts, preparation_.order(), board_.get()};
     options.chooser = preparation_.problem().chooser.get();
     options.dead_ends = dead_ends;
     return search_->modify(block, labels, options, {seed_, index, 0, 0}, stop_);
@@ -104,7 +104,7 @@ ModifiedBlock BlockSolver::modify(
         return modified;
     }
     if (larger.outcome == BlockOutcome::kReverted && board_ == nullptr) {
-        BoxOptions options = {0, preparation_.parameters().order};
+        BoxOptions options = {0, preparation_.order()};
         options.by_sat = kBlockBySat;
         const auto by_sat = search_->modify(block, labels, options, {seed_, index, 0, 0}, stop_);
         result.outcome = by_sat.outcome;

@@ -120,7 +120,7 @@ std::size_t BoxSearch::largest_part() const {
 
 std::span<const Site> BoxSearch::scan_of(const GridSize& shape) {
     if (shape != scan_shape_) {
-        scan_ = column_order(shape);
+        scan_ = scan_order(shape, problem_.scan_axes);
         scan_shape_ = shape;
     }
     return scan_;

@@ -67,7 +67,7 @@ class BoxSearch {
     [[nodiscard]] std::size_t largest_part() const;
 
   private:
-    // The box's cells column by column, as numbers in the box.
+    // The box's cells in the order of the problem's scan, as numbers in the box.
     [[nodiscard]] std::span<const Site> scan_of(const GridSize& shape);
 
     const Problem& problem_;

@@ -4,6 +4,7 @@
 #include "solver/core/grid.h"
 #include "solver/core/search.h"
 #include "solver/discrete/example.h"
+#include "solver/discrete/scan_order.h"
 
 #include <array>
 #include <cstdint>
@@ -232,6 +233,15 @@ struct Constraint {
     friend bool operator==(const Constraint&, const Constraint&) = default;
 };
 
+// Which cell is labelled next.
+struct CellOrder {
+    Order order = Order::kScan;
+    ScanAxes axes = kColumns;       // of kScan
+    bool is_chosen_for_it = false;  // by trying which suits the example; `order` is then nothing
+
+    friend bool operator==(const CellOrder&, const CellOrder&) = default;
+};
+
 // What a discrete synthesis can be asked for; plain data, every field with a usable default once
 // `fill_defaults` has run.
 struct Parameters {
@@ -239,7 +249,7 @@ struct Parameters {
     // none: chosen to suit the size; a value without blocks: the whole at once.
     std::optional<std::optional<Blocks>> blocks;
     std::array<std::optional<SideBoundary>, kDirectionCount> boundary;  // none: the example's
-    Order order = Order::kScan;
+    CellOrder order;
     std::optional<Weights> weights;  // none: the example's default
     std::vector<Constraint> constraints;
 

@@ -2,6 +2,7 @@
 
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
+#include "solver/discrete/search_keys.h"
 
 #include <algorithm>
 #include <utility>
@@ -14,18 +15,28 @@ namespace {
 constexpr std::size_t kKeptPartCellsMax = std::size_t{1} << 15;
 constexpr std::size_t kKeptSearchesMax = 8;
 
+// How an order is chosen: by so many searches, of boxes of this size where there are no blocks.
+constexpr std::uint32_t kProbes = 8;
+constexpr GridSize kProbeSize = {16, 16, 16};
+
 }  // namespace
 
 Preparation::Preparation(
     std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
 )
-    : example_(std::move(example)), parameters_(parameters), problem_(std::move(problem)) {
+    : example_(std::move(example)),
+      parameters_(parameters),
+      problem_(std::move(problem)),
+      order_(parameters.order.order) {
     if (const auto& blocks = *parameters_.blocks) {
         plain_model_ = find_plain_model(*example_, problem_);
         if (plain_model_ && !can_change_middle(blocks->layout.size)) {
             is_plain_model_rigid_ = true;
             plain_model_.reset();
         }
+    }
+    if (parameters_.order.is_chosen_for_it) {
+        order_ = choose_order();
     }
 }
 
@@ -47,20 +58,43 @@ Result<std::shared_ptr<Preparation>> Preparation::make(
     );
 }
 
-bool Preparation::can_change_middle(const GridSize& block) {
-    const GridSize& size = problem_.size;
+Box Preparation::middle(const GridSize& block) const {
     const auto range = [](std::int32_t extent, std::int32_t length) {
         const std::int32_t cut = std::min(extent, length);
         return std::pair((extent - cut) / 2, (extent - cut) / 2 + cut);
     };
-    const auto [west, east] = range(size.x, block.x);
-    const auto [bottom, top] = range(size.y, block.y);
-    const auto [north, south] = range(size.z, block.z);
+    const auto [west, east] = range(problem_.size.x, block.x);
+    const auto [bottom, top] = range(problem_.size.y, block.y);
+    const auto [north, south] = range(problem_.size.z, block.z);
+    return {{west, bottom, north}, {east, top, south}};
+}
+
+bool Preparation::can_change_middle(const GridSize& block) {
     auto search = take_search();
-    const bool can_change =
-        !search->is_determined(Box{{west, bottom, north}, {east, top, south}}, *plain_model_, {});
+    const bool can_change = !search->is_determined(middle(block), *plain_model_, {});
     give_back(std::move(search));
     return can_change;
+}
+
+Order Preparation::choose_order() {
+    const auto& blocks = *parameters_.blocks;
+    const Box box = middle(blocks ? blocks->layout.size : kProbeSize);
+    auto search = take_search();
+    const auto successes = [&](Order order) {
+        std::uint32_t count = 0;
+        for (std::uint32_t probe = 0; probe < kProbes; ++probe) {
+            // What stands around it is not known yet, so nothing is asked of it.
+            std::vector<Label> model(problem_.size.cell_count(), kNoLabel);
+            const auto result =
+                search->modify(box, model, {1, order}, {0, kProbeKeys + probe, 0, 0}, {});
+            count += result.outcome == BlockOutcome::kAccepted && result.backtracks == 0 ? 1U : 0U;
+        }
+        return count;
+    };
+    const std::uint32_t by_scan = successes(Order::kScan);
+    const bool is_scan_best = by_scan == kProbes || by_scan >= successes(Order::kMinEntropy);
+    give_back(std::move(search));
+    return is_scan_best ? Order::kScan : Order::kMinEntropy;
 }
 
 std::unique_ptr<BoxSearch> Preparation::take_search() {

@@ -49,6 +49,9 @@ class Preparation {
     // as air in an example whose ground is not its own neighbour. It would be the result.
     [[nodiscard]] bool is_plain_model_rigid() const { return is_plain_model_rigid_; }
 
+    // That asked for, or the one that suits the example.
+    [[nodiscard]] Order order() const { return order_; }
+
     // A search for one thread, given back at the end.
     [[nodiscard]] std::unique_ptr<BoxSearch> take_search();
     void give_back(std::unique_ptr<BoxSearch> search);
@@ -58,14 +61,22 @@ class Preparation {
         std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
     );
 
+    // As large as that, or as the model.
+    [[nodiscard]] Box middle(const GridSize& block) const;
+
     // Whether a block of that size, outside of which the plain model stands, has any choice.
     [[nodiscard]] bool can_change_middle(const GridSize& block);
+
+    // Of scan and entropy the one by which more boxes in the middle of the model succeed at once;
+    // of equal ones scan, which is the faster.
+    [[nodiscard]] Order choose_order();
 
     std::shared_ptr<const Example> example_;
     Parameters parameters_;
     Problem problem_;
     std::optional<std::vector<Label>> plain_model_;
     bool is_plain_model_rigid_ = false;
+    Order order_;
     BoxSearch::Bases bases_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<BoxSearch>> searches_;

@@ -196,7 +196,8 @@ Result<Problem> read_problem(
         nullptr,
         nullptr,
         nullptr,
-        std::nullopt};
+        std::nullopt,
+        parameters.order.axes};
     const LabelOfName labels = labels_by_name(example);
     for (std::size_t side = 0; side < kDirectionCount; ++side) {
         const SideBoundary& boundary = *parameters.boundary[side];

@@ -53,6 +53,7 @@ struct Problem {
     std::unique_ptr<const Symmetries> symmetries;  // null: none
     std::unique_ptr<const LabelChooser> chooser;   // null: labels are drawn by weight alone
     std::optional<Start> start;
+    ScanAxes scan_axes = kColumns;
 };
 
 // What is kept of the model that another one starts from is fixed.

@@ -9,5 +9,6 @@ inline constexpr std::uint32_t kWholeKey = 0xFFFFFFFF;
 inline constexpr std::uint32_t kTileKey = 0xFFFFFFFE;
 inline constexpr std::uint32_t kMendKey = 0xFFFFFFFD;
 inline constexpr std::uint32_t kPlantKeys = 0x80000000;  // from here on
+inline constexpr std::uint32_t kProbeKeys = 0xF0000000;  // likewise
 
 }  // namespace modelsynth::discrete

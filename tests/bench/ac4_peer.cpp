@@ -255,7 +255,9 @@ bool Ac4Peer::attempt(Workspace& workspace, const RandomKey& key) const {
     };
     return options_.order == Order::kScan
                ? run(ScanPicker(workspace.scan))
-               : run(EntropyPicker(catalog, PartWeights{problem_.weights, {}}, random));
+               : run(LeastOpenPicker(
+                     catalog, PartWeights{problem_.weights, {}}, random, Openness::kEntropy
+                 ));
 }
 
 bool Ac4Peer::narrow_border(const GridPart& part, std::span<const Label> model, Ac4Catalog& catalog)

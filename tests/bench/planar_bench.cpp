@@ -83,7 +83,7 @@ class AttemptCounter final : public modelsynth::Observer {
 std::shared_ptr<discrete::Preparation> prepare(const Row& row) {
     discrete::Parameters parameters;
     parameters.size = modelsynth::GridSize{row.side, 1, row.side};
-    parameters.order = row.order;
+    parameters.order.order = row.order;
     // Patterns and tiles have weights of their own.
     parameters.weights = discrete::WeightRule::kUniform;
     if (!row.in_blocks) {
@@ -161,6 +161,10 @@ const char* name_of(const Row& row) {
             return "min_entropy";
         case Order::kRandom:
             return "random";
+        case Order::kFewestLabels:
+            return "fewest_labels";
+        case Order::kGrowth:
+            return "growth";
     }
     return "";
 }

@@ -148,7 +148,7 @@ Case make_case(std::uint64_t seed, bool in_blocks) {
     Case made;
     made.example = std::make_shared<const discrete::Example>(make_random_example(seed));
     made.parameters.size = GridSize{1 + below(12), 1 + below(5), 1 + below(12)};
-    made.parameters.order = random.below(3) == 0 ? Order::kMinEntropy : Order::kScan;
+    made.parameters.order.order = random.below(3) == 0 ? Order::kMinEntropy : Order::kScan;
     made.parameters.blocks = std::optional<discrete::Blocks>();
     if (in_blocks) {
         discrete::Blocks blocks;
@@ -186,7 +186,7 @@ void check_models(std::uint64_t seed, bool in_blocks, Tally& tally) {
         return;
     }
     const discrete::Problem& problem = (*made)->problem();
-    Ac4Peer peer(problem, {wanted.parameters.order});
+    Ac4Peer peer(problem, {wanted.parameters.order.order});
     std::vector<Box> schedule;
     if (in_blocks) {
         const auto& layout = (*wanted.parameters.blocks)->layout;

@@ -47,7 +47,7 @@ TEST_P(BuiltIn, IsMadeInEveryOrderAndInBlocksOfAnySize) {
         for (const std::int32_t extent : {4, 7, 16}) {
             Parameters parameters;
             parameters.size = GridSize{23, 8, 17};
-            parameters.order = order;
+            parameters.order.order = order;
             Blocks blocks;
             blocks.layout.size = {extent, 8, extent};
             parameters.blocks = blocks;

@@ -194,8 +194,9 @@ class CaseMaker {
         } else {
             parameters.blocks = std::optional<Blocks>();
         }
-        constexpr std::array<Order, 3> kOrders = {Order::kScan, Order::kMinEntropy, Order::kRandom};
-        parameters.order = kOrders.at(static_cast<std::size_t>(below(3)));
+        constexpr std::array<Order, 5> kOrders = {
+            Order::kScan, Order::kMinEntropy, Order::kFewestLabels, Order::kRandom, Order::kGrowth};
+        parameters.order.order = kOrders.at(static_cast<std::size_t>(below(5)));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             made.periodic[axis] = below(4) == 0;
             for (const std::size_t side : {2 * axis, 2 * axis + 1}) {

@@ -47,8 +47,9 @@ Case make_case(std::uint64_t seed) {
         blocks.layout.passes = static_cast<std::uint32_t>(1 + below(2));
         parameters.blocks = blocks;
     }
-    constexpr std::array<Order, 3> kOrders = {Order::kScan, Order::kMinEntropy, Order::kRandom};
-    parameters.order = kOrders.at(random.below(3));
+    constexpr std::array<Order, 5> kOrders = {
+        Order::kScan, Order::kMinEntropy, Order::kFewestLabels, Order::kRandom, Order::kGrowth};
+    parameters.order.order = kOrders.at(random.below(5));
     parameters.weights = below(2) == 0 ? WeightRule::kUniform : WeightRule::kExample;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto kind = random.below(5);

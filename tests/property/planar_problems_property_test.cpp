@@ -149,7 +149,7 @@ std::optional<std::vector<Label>> synthesise_plane(
 ) {
     discrete::Parameters parameters;
     parameters.size = size;
-    parameters.order = order;
+    parameters.order.order = order;
     parameters.blocks = std::optional<discrete::Blocks>();
     RecordingObserver observer;
     const auto model = synthesise(example, fill_defaults(parameters, example), 1, observer, {});

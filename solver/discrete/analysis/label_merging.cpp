@@ -94,7 +94,7 @@ class Merger {
     std::optional<SplitProof> prove(const SplitLabels& labels) {
         CubePairs cube;
         ProofOutcome outcome = labels.visit_conflicts(
-            SplitOrder::kLowerAxisFirst, work_, [](const Conflict&) { return true; }
+            SplitOrder::kLowerAxisFirst, work_, [](const SplitConflict&) { return true; }
         );
         if (outcome == ProofOutcome::kProved) {
             outcome = labels.find_open_cube(work_, cube);

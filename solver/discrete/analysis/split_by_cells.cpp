@@ -33,7 +33,7 @@ class CellSplitter {
             const std::vector<Label> before = cells_;
             LabelSet are_split(capacity_);
             ProofOutcome outcome =
-                going_on.visit_conflicts(order, work, [&](const Conflict& conflict) {
+                going_on.visit_conflicts(order, work, [&](const SplitConflict& conflict) {
                     if (!are_split.contains(conflict.label) &&
                         split(before, conflict.label, conflict.towards, conflict.neighbours)) {
                         are_split.insert(conflict.label);

@@ -9,12 +9,12 @@ namespace {
 
 // Whether a conflict is settled by forbidding pairs alone: all that may come after the label on
 // one of the axes takes part in it.
-bool is_settled_by_forbidding(const SplitLabels& labels, const Conflict& conflict) {
+bool is_settled_by_forbidding(const SplitLabels& labels, const SplitConflict& conflict) {
     return labels.after(conflict.towards, conflict.label) == conflict.neighbours ||
            labels.after(conflict.against, conflict.label).count() == 1;
 }
 
-void forbid_pairs(SplitLabels& labels, const Conflict& conflict) {
+void forbid_pairs(SplitLabels& labels, const SplitConflict& conflict) {
     if (labels.after(conflict.towards, conflict.label) == conflict.neighbours) {
         labels.forbid(conflict.against, conflict.label, conflict.excluded);
         return;
@@ -36,7 +36,7 @@ Label split(SplitLabels& labels, Label label, std::size_t axis, const LabelSet& 
     return twin;
 }
 
-void split(SplitLabels& labels, const Conflict& conflict) {
+void split(SplitLabels& labels, const SplitConflict& conflict) {
     const Label twin = split(labels, conflict.label, conflict.towards, conflict.neighbours);
     labels.forbid(conflict.against, twin, conflict.excluded);
     if (conflict.excluded == conflict.label) {
@@ -70,15 +70,16 @@ ProofOutcome split_by_rules(SplitLabels& labels, SplitOrder order, Work& work) {
     for (;;) {
         labels.remove_ends();
         // Forbidding pairs first keeps the number of labels down.
-        std::optional<Conflict> found;
+        std::optional<SplitConflict> found;
         bool is_forbidding = false;
-        const ProofOutcome outcome = labels.visit_conflicts(order, work, [&](Conflict conflict) {
-            is_forbidding = is_settled_by_forbidding(labels, conflict);
-            if (is_forbidding || !found) {
-                found = std::move(conflict);
-            }
-            return is_forbidding;
-        });
+        const ProofOutcome outcome =
+            labels.visit_conflicts(order, work, [&](SplitConflict conflict) {
+                is_forbidding = is_settled_by_forbidding(labels, conflict);
+                if (is_forbidding || !found) {
+                    found = std::move(conflict);
+                }
+                return is_forbidding;
+            });
         if (outcome == ProofOutcome::kNoWork) {
             return outcome;
         }

@@ -16,7 +16,7 @@ namespace modelsynth::discrete {
 // A corner that cannot be closed (Eq. 3.11, thesis 3.3.7): any of `neighbours` may come after
 // `label` along the axis `towards`, `excluded` may come after it along the axis `against`, and
 // nothing may come after both of them. The label stands for things that have one or the other.
-struct Conflict {
+struct SplitConflict {
     Label label = 0;
     std::size_t towards = 0;
     LabelSet neighbours;
@@ -68,7 +68,7 @@ class SplitLabels {
     // Removes labels that nothing may come after along an open axis, until there are none.
     void remove_ends();
 
-    // Calls visit(const Conflict&) for the conflicts there are, until it returns true. Any two
+    // Calls visit(const SplitConflict&) for the conflicts there are, until it returns true. Any two
     // neighbours of a label along two axes that cannot be closed are in one of them.
     // Returns kProved when there are no conflicts, kNoWork when the work is used up.
     // Cost: a step for every label and pair of axes.
@@ -146,7 +146,8 @@ ProofOutcome SplitLabels::visit_conflicts(SplitOrder order, Work& work, const Vi
                 LabelSet open = without(after(towards, label), closing[excluded]);
                 if (!open.empty()) {
                     has_any = true;
-                    is_done = visit(Conflict{label, towards, std::move(open), against, excluded});
+                    is_done =
+                        visit(SplitConflict{label, towards, std::move(open), against, excluded});
                 }
             });
             if (is_done) {

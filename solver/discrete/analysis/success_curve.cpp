@@ -4,6 +4,7 @@
 #include "solver/core/grid_topology.h"
 #include "solver/core/random.h"
 #include "solver/core/search.h"
+#include "solver/core/site_order.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/scan_order.h"
 
@@ -17,15 +18,6 @@ namespace {
 
 // What RandomKey::purpose says of the streams drawn here.
 constexpr std::uint32_t kPurposeSuccess = 3;
-
-std::vector<Site> shuffle(std::size_t site_count, RandomStream& random) {
-    std::vector<Site> sites(site_count);
-    std::iota(sites.begin(), sites.end(), Site{0});
-    for (std::size_t left = sites.size(); left > 1; --left) {
-        std::swap(sites[left - 1], sites[random.below(static_cast<std::uint32_t>(left))]);
-    }
-    return sites;
-}
 
 // Runs for one size, with label sets of kWords words; 0: of any number.
 template <std::size_t kWords>
@@ -57,20 +49,9 @@ class Runs {
         catalog_.restore(start_);
         RandomStream random(key);
         const PartWeights weights = {problem_.weights, {}};  // there are no constraints
-        const auto with = [&](auto picker) {
+        return with_picker(order_, catalog_, topology_, scan_, weights, random, [&](auto picker) {
             return Search(catalog_, picker, weights, {}, random, stop_).run({0});
-        };
-        switch (order_) {
-            case Order::kScan:
-                return with(ScanPicker(scan_));
-            case Order::kRandom: {
-                const std::vector<Site> shuffled = shuffle(scan_.size(), random);
-                return with(ScanPicker(shuffled));
-            }
-            case Order::kMinEntropy:
-                return with(EntropyPicker(catalog_, weights, random));
-        }
-        return SearchOutcome::kFailed;
+        });
     }
 
   private:
@@ -115,7 +96,7 @@ std::uint32_t count_successes(
         return 0;
     }
     const auto count = [&]<std::size_t kWords>() {
-        return count_successes<kWords>(*problem, parameters.order, runs, seed, stop);
+        return count_successes<kWords>(*problem, parameters.order.order, runs, seed, stop);
     };
     switch (problem->relations.words()) {
         case 1:

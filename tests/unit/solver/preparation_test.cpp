@@ -25,7 +25,7 @@ std::shared_ptr<const Example> castle() { return examples::built_in().front(); }
 Parameters sized(const Example& example, const GridSize& size, Order order = Order::kScan) {
     Parameters parameters;
     parameters.size = size;
-    parameters.order = order;
+    parameters.order.order = order;
     return fill_defaults(parameters, example);
 }
 

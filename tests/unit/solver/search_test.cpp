@@ -95,7 +95,7 @@ TEST(Search, SolvesWhatCanBeSolvedAndNothingElseWhenItMayTakeEnoughBack) {
     std::iota(scan.begin(), scan.end(), Site{0});
     const auto by_scan = [&](auto&, const auto&, auto&) { return ScanPicker(scan); };
     const auto by_entropy = [](auto& catalog, const auto& weights, auto& random) {
-        return EntropyPicker(catalog, weights, random);
+        return LeastOpenPicker(catalog, weights, random, Openness::kEntropy);
     };
     std::size_t soluble = 0;
     std::size_t missed_without = 0;

@@ -20,7 +20,7 @@ std::vector<SuccessPoint> measure(
     const Example& example, const SuccessOptions& options, Order order = Order::kScan
 ) {
     Parameters parameters;
-    parameters.order = order;
+    parameters.order.order = order;
     parameters.size = GridSize{40, 1, 40};
     return measure_success(example, fill_defaults(parameters, example), options, {}).value();
 }
