@@ -193,7 +193,8 @@ class Explainer {
     ) {
         std::string text = "no model of this size exists: ";
         const std::vector<std::string> names = names_of(causes);
-        text += names.empty()       ? "the pieces of the example cannot fill it"
+        text += names.empty() ? list_names(example_, problem.domains.at(0)) +
+                                    " cannot fill it, whatever stands at its sides"
                 : names.size() == 1 ? names.front() + " cannot hold"
                                     : join_words(names) + " cannot hold together";
         std::vector<std::string> cells;
