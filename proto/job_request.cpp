@@ -251,8 +251,7 @@ class RequestReader {
             parameters_.constraints.clear();  // no places in such a model; a fault will tell
             return;
         }
-        auto moved =
-            moved_constraints(std::move(parameters_.constraints), request_.from->origin.at);
+        auto moved = moved_constraints(std::move(parameters_.constraints), request_.from->origin);
         if (moved) {
             parameters_.constraints = std::move(*moved);
         } else {

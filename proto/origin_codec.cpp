@@ -17,6 +17,12 @@ Cell moved(const Cell& cell, const Cell& by) {
     return {cell.x + by.x, cell.y + by.y, cell.z + by.z};
 }
 
+bool is_about_the_middle(const discrete::Constraint& constraint) {
+    const auto* symmetry = std::get_if<discrete::Symmetry>(&constraint.rule);
+    return symmetry != nullptr && symmetry->kind != discrete::Symmetry::Kind::kTranslate &&
+           constraint.region == discrete::Region{};
+}
+
 void move(discrete::Constraint& constraint, const Cell& by) {
     discrete::Region& region = constraint.region;
     if (region.box) {
@@ -84,13 +90,16 @@ std::vector<Fault> find_origin_faults(const JobOrigin& from, const GridSize& mod
 }
 
 tl::expected<std::vector<discrete::Constraint>, std::size_t> moved_constraints(
-    std::vector<discrete::Constraint> constraints, const Cell& at
+    std::vector<discrete::Constraint> constraints, const discrete::Origin& origin
 ) {
     for (std::size_t i = 0; i < constraints.size(); ++i) {
         if (constraints[i].region.mask || constraints[i].region.voxels) {
             return tl::unexpected(i);
         }
-        move(constraints[i], at);
+        if (is_about_the_middle(constraints[i])) {
+            constraints[i].region.box = Box::whole(origin.size);
+        }
+        move(constraints[i], origin.at);
     }
     return constraints;
 }

@@ -24,11 +24,11 @@ namespace modelsynth::proto {
 // Where it does not, and what of the region does not. Pointers are of the request.
 [[nodiscard]] std::vector<Fault> find_origin_faults(const JobOrigin& from, const GridSize& model);
 
-// What was asked of the older model, asked of one of another size in which it lies at `at`:
-// constraints go with their places. Fails: with the position of one that cannot, since a mask and
-// voxels are stretched over the whole model.
+// What was asked of the older model, asked of one of another size: constraints go with their
+// places, and a symmetry about the older model's middle stays there. Fails: with the position of
+// one that cannot, since a mask and voxels are stretched over the whole model.
 [[nodiscard]] tl::expected<std::vector<discrete::Constraint>, std::size_t> moved_constraints(
-    std::vector<discrete::Constraint> constraints, const Cell& at
+    std::vector<discrete::Constraint> constraints, const discrete::Origin& origin
 );
 
 }  // namespace modelsynth::proto

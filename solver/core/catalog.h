@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/core/allowed_lists.h"
 #include "solver/core/label_set.h"
 #include "solver/core/relations.h"
 #include "solver/core/result.h"
@@ -9,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -24,7 +27,9 @@ namespace modelsynth {
 // does not depend on the order in which sites were narrowed. It is an outer bound of the ideal
 // catalog C*: what was removed cannot be, what is left may not be (Theorem 3.3.2).
 //
-// kWords is the number of words of a set when it is known at compile time, 0 when it is not.
+// kWords is the number of words of a set when it is known at compile time, 0 when it is not. Such
+// sets may be large: where few labels went from a site, it follows these instead of adding up what
+// all that are left allow.
 // Cost: narrow O(words); propagate O(removed labels * arcs) rows at most, no allocation once warm.
 // Thread-safety: one thread at a time; topology and relations are only read.
 template <Topology T, std::size_t kWords>
@@ -44,6 +49,11 @@ class Catalog {
           queued_(topology.site_count()),
           saved_(topology.site_count()),
           support_(relations.stride()) {
+        if constexpr (kWords == 0) {
+            allowed_lists_.emplace(relations);
+            seen_.resize(topology.site_count() * words_);
+            unseen_.resize(topology.site_count(), 1);
+        }
         check(words_ == relations.words(), "a catalog of another width than its relations");
         check(
             T::kRelationCount == 0 || T::kRelationCount == relations.count(),
@@ -61,15 +71,14 @@ class Catalog {
         return {set(0), site_count() * words()};
     }
 
-    [[nodiscard]] bool contains(Site site, Label label) const {
-        return (labels(site)[label / kWordBits] >> (label % kWordBits) & 1) != 0;
-    }
+    [[nodiscard]] bool contains(Site site, Label label) const { return is_in(set(site), label); }
 
     // Puts back a state taken from all_labels() of a catalog of the same shape, or any sets.
     // Nothing is queued: the state is taken to be what propagation left. No marks are left, and
     // changes are no longer tracked.
     void restore(std::span<const Word> sets) {
         std::copy(sets.begin(), sets.end(), set(0));
+        see_all();
         forget_queue();
         forget_trail();
     }
@@ -79,6 +88,7 @@ class Catalog {
         for (std::size_t site = 0; site < site_count(); ++site) {
             std::copy(same.begin(), same.end(), set(static_cast<Site>(site)));
         }
+        see_all();
         forget_queue();
         forget_trail();
     }
@@ -131,6 +141,7 @@ class Catalog {
 
     // Every site is looked at by the next propagate(). For a state that no propagation has seen.
     void enqueue_all() {
+        std::fill(unseen_.begin(), unseen_.end(), std::uint8_t{1});
         for (std::size_t site = 0; site < site_count(); ++site) {
             enqueue(static_cast<Site>(site));
         }
@@ -170,6 +181,9 @@ class Catalog {
             const Site site = trail_sites_[trail_length_];
             const Word* old = trail_words_.data() + trail_length_ * words();
             std::copy(old, old + words(), set(site));
+            if constexpr (kWords == 0) {
+                see(site);
+            }
             note_change(site);
         }
         forget_queue();
@@ -190,6 +204,8 @@ class Catalog {
   private:
     static constexpr bool kIsStepped = kWords > 0 && SteppedTopology<T>;
     static constexpr std::size_t kTrailStart = 64;
+    // About as many words of rows are added up in the time that it takes to follow a pair.
+    static constexpr std::size_t kWordsPerPair = 24;
 
     static std::size_t reach_of(const T& topology) {
         if constexpr (kIsStepped) {
@@ -197,6 +213,10 @@ class Catalog {
         } else {
             return 0;
         }
+    }
+
+    static bool is_in(const Word* set, Label label) {
+        return (set[label / kWordBits] >> (label % kWordBits) & 1) != 0;
     }
 
     [[nodiscard]] Word* set(Site site) { return sets_.data() + padding_ + site * words(); }
@@ -242,16 +262,104 @@ class Catalog {
                 return Propagation::kStopped;
             }
             const Site site = dequeue();
-            collect_support(site);
             bool consistent = true;
-            topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
-                consistent = consistent && narrow(neighbour, support_.data() + relation * words());
-            });
+            if (find_few_removed(site)) {
+                consistent = follow_removed(site);
+            } else {
+                collect_support(site);
+                topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
+                    consistent =
+                        consistent && narrow(neighbour, support_.data() + relation * words());
+                });
+            }
             if (!consistent) {
                 return Propagation::kContradiction;
             }
         }
         return Propagation::kConsistent;
+    }
+
+    // Of a site as it was when its neighbours last heard of it.
+    void see(Site site) requires(kWords == 0) {
+        const Word* const own = set(site);
+        std::copy(own, own + words(), seen_.data() + site * words());
+    }
+
+    void see_all() {
+        if constexpr (kWords == 0) {
+            std::copy(set(0), set(0) + site_count() * words(), seen_.data());
+            std::fill(unseen_.begin(), unseen_.end(), std::uint8_t{0});
+        }
+    }
+
+    // Puts what went from the site since then into removed_; false when that is so much that it is
+    // not worth following, or not known.
+    bool find_few_removed(Site site) {
+        if constexpr (kWords > 0) {
+            return false;
+        } else {
+            const bool is_known = unseen_[site] == 0 && !allowed_lists_->is_dense();
+            unseen_[site] = 0;
+            const Word* const own = set(site);
+            Word* const seen = seen_.data() + site * words();
+            removed_.resize(words());
+            for (std::size_t word = 0; word < words(); ++word) {
+                removed_[word] = seen[word] & ~own[word];
+                seen[word] = own[word];
+            }
+            return is_known &&
+                   count_labels(removed_) * allowed_lists_->pairs_per_label() * kWordsPerPair <
+                       count_nibbles(labels(site)) * support_.size();
+        }
+    }
+
+    // How many aligned groups of four labels have any in the set.
+    static std::size_t count_nibbles(Labels labels) {
+        constexpr Word kFirstOfEach = 0x1111'1111'1111'1111;
+        std::size_t count = 0;
+        for (const Word word : labels) {
+            const Word pairs = word | word >> 1;
+            count += static_cast<std::size_t>(std::popcount((pairs | pairs >> 2) & kFirstOfEach));
+        }
+        return count;
+    }
+
+    // Takes from the neighbours what only labels of removed_ allowed.
+    bool follow_removed(Site site) {
+        bool consistent = true;
+        topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
+            if (!consistent) {
+                return;
+            }
+            bool changes = false;
+            for_each_label(removed_, [&](Label gone) {
+                for (const Label label : allowed_lists_->allowed(relation, gone)) {
+                    if (is_in(set(neighbour), label) && !is_supported(label, relation, site)) {
+                        if (!changes) {
+                            save(neighbour);
+                            enqueue(neighbour);
+                            changes = true;
+                        }
+                        set(neighbour)[label / kWordBits] &= ~(Word{1} << (label % kWordBits));
+                    }
+                }
+            });
+            if (changes && is_empty(labels(neighbour))) {
+                emptied_ = neighbour;
+                consistent = false;
+            }
+        });
+        return consistent;
+    }
+
+    // Whether a label left at `site` allows this one at its neighbour along the relation.
+    bool is_supported(Label label, RelationId relation, Site site) const {
+        for (const Label other : allowed_lists_->allowed(relations_.reverse(relation), label)) {
+            if (is_in(set(site), other)) {
+                return true;
+            }
+        }
+        return false;
     }
 
     // support_[r] = the labels that some label left at the site allows along relation r.
@@ -351,6 +459,11 @@ class Catalog {
     std::uint64_t stamp_ = 0;
     std::size_t marks_ = 0;
     std::vector<Word> support_;
+    // For sets of any width, which may be large; see find_few_removed().
+    std::optional<AllowedLists> allowed_lists_;
+    std::vector<Word> seen_;
+    std::vector<std::uint8_t> unseen_;  // sites whose neighbours have not heard of them at all
+    std::vector<Word> removed_;
     std::vector<Site> changed_;
     bool tracking_ = false;
     Site emptied_ = 0;

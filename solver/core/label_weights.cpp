@@ -36,11 +36,13 @@ constexpr std::array<std::uint32_t, (1U << kLogTableBits) + 1> make_log_table() 
 
 constexpr auto kLogTable = make_log_table();
 
-// Of `count` labels whose weights, and these times their logarithms, come to the sums given.
-std::uint32_t entropy_of(std::uint64_t weights, std::uint64_t logs, std::uint64_t count) {
-    if (weights == 0) {
-        return fixed_log2(std::max<std::uint64_t>(1, count));
-    }
+// Of labels that are drawn alike.
+std::uint32_t entropy_of_equals(std::uint64_t count) {
+    return fixed_log2(std::max<std::uint64_t>(1, count));
+}
+
+// Of labels whose weights, and these times their logarithms, come to the sums given.
+std::uint32_t entropy_of(std::uint64_t weights, std::uint64_t logs) {
     const std::uint64_t mean = logs / weights;
     const std::uint64_t whole = fixed_log2(weights);
     return static_cast<std::uint32_t>(whole > mean ? whole - mean : 0);
@@ -75,8 +77,10 @@ LabelWeights::LabelWeights(std::span<const double> weights)
     if (!weights_.empty() && std::count(weights_.begin(), weights_.end(), weights_.front()) ==
                                  static_cast<std::ptrdiff_t>(weights_.size())) {
         for (std::uint64_t count = 0; count <= weights_.size(); ++count) {
+            const std::uint64_t total = count * weights_.front();
             entropy_of_count_.push_back(
-                entropy_of(count * weights_.front(), count * weighted_logs_.front(), count)
+                total == 0 ? entropy_of_equals(count)
+                           : entropy_of(total, count * weighted_logs_.front())
             );
         }
     }
@@ -112,13 +116,50 @@ std::uint32_t LabelWeights::entropy(std::span<const Word> set) const {
     if (!entropy_of_count_.empty()) {
         return entropy_of_count_[count_labels(set)];
     }
-    std::uint64_t total = 0;
-    std::uint64_t logs = 0;
+    const Sums sums = add_up(set);
+    return sums.weights == 0 ? entropy_of_equals(count_labels(set))
+                             : entropy_of(sums.weights, sums.logs);
+}
+
+void LabelWeights::add_up_groups() {
+    if (!entropy_of_count_.empty()) {
+        return;
+    }
+    constexpr std::size_t kSubsets = std::size_t{1} << kGroupBits;
+    group_sums_.resize(words_for(weights_.size()) * (kWordBits / kGroupBits) * kSubsets);
+    for (std::size_t i = 0; i < group_sums_.size(); ++i) {
+        const std::size_t members = i % kSubsets;
+        const std::size_t last = i / kSubsets * kGroupBits + std::bit_width(members) - 1;
+        if (members == 0 || last >= weights_.size()) {
+            continue;  // no set has labels past the last one
+        }
+        const Sums& others = group_sums_[i ^ std::bit_floor(members)];
+        group_sums_[i] = {others.weights + weights_[last], others.logs + weighted_logs_[last]};
+    }
+}
+
+LabelWeights::Sums LabelWeights::add_up(std::span<const Word> set) const {
+    Sums sums;
+    if (!group_sums_.empty()) {
+        constexpr std::size_t kGroups = kWordBits / kGroupBits;  // of a word
+        constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
+        const Sums* subsets = group_sums_.data();
+        for (const Word word : set) {
+            // Looking up empty groups too is cheaper than to mispredict how many there are.
+            for (std::size_t group = 0; group < kGroups; ++group) {
+                const Sums& part = subsets[word >> group * kGroupBits & kMembers];
+                sums.weights += part.weights;
+                sums.logs += part.logs;
+                subsets += std::size_t{1} << kGroupBits;
+            }
+        }
+        return sums;
+    }
     for_each_label(set, [&](Label label) {
-        total += weights_[label];
-        logs += weighted_logs_[label];
+        sums.weights += weights_[label];
+        sums.logs += weighted_logs_[label];
     });
-    return entropy_of(total, logs, count_labels(set));
+    return sums;
 }
 
 }  // namespace modelsynth

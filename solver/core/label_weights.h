@@ -29,9 +29,25 @@ class LabelWeights {
     // Shannon entropy of the draw in units of 2^-16 bits, by integer arithmetic.
     [[nodiscard]] std::uint32_t entropy(std::span<const Word> set) const;
 
+    // Makes entropy() several times faster, for 64 bytes a label; it returns the same.
+    void add_up_groups();
+
   private:
+    static constexpr std::size_t kGroupBits = 4;
+
+    // Over the labels of a set.
+    struct Sums {
+        std::uint64_t weights = 0;
+        std::uint64_t logs = 0;  // of weighted_logs_
+    };
+
+    [[nodiscard]] Sums add_up(std::span<const Word> set) const;
+
     std::vector<std::uint32_t> weights_;
     std::vector<std::uint64_t> weighted_logs_;  // w * log2(w), in units of 2^-16
+    // Of every subset of the labels kGroupBits * i ..., label kGroupBits * i + j at bit j of its
+    // number; subsets of one group lie side by side. Empty before add_up_groups().
+    std::vector<Sums> group_sums_;
     // By the number of labels, where all have the same weight; empty where they have not.
     std::vector<std::uint32_t> entropy_of_count_;
 };

@@ -3,6 +3,7 @@
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
 #include "solver/core/label_chooser.h"
+#include "solver/core/least_key.h"
 #include "solver/core/random.h"
 #include "solver/core/site_weights.h"
 
@@ -55,8 +56,7 @@ class ScanPicker {
     std::size_t position_ = 0;
 };
 
-// Hands out the site of least entropy from a heap of (entropy, noise) keys. Entries are renewed
-// when a site changes; an entry whose key is no longer the site's is passed over.
+// Hands out the site of least entropy; noise decides between equal ones.
 class EntropyPicker {
   public:
     static constexpr bool kFollowsChanges = true;
@@ -64,14 +64,14 @@ class EntropyPicker {
     template <class CatalogType>
     EntropyPicker(CatalogType& catalog, const PartWeights& weights, RandomStream& random)
         : weights_(weights),
-          keys_(catalog.site_count()),
           noise_(catalog.site_count()),
-          round_of_(catalog.site_count()) {
+          round_of_(catalog.site_count()),
+          keys_(catalog.site_count()) {
         catalog.track_changes();
         catalog.clear_changed();
-        for (std::size_t site = 0; site < keys_.size(); ++site) {
+        for (std::size_t site = 0; site < noise_.size(); ++site) {
             noise_[site] = random.next();
-            push(catalog, static_cast<Site>(site));
+            renew(catalog, static_cast<Site>(site));
         }
     }
 
@@ -81,23 +81,15 @@ class EntropyPicker {
         for (const Site changed : catalog.changed()) {
             if (round_of_[changed] != round_) {  // some are listed many times
                 round_of_[changed] = round_;
-                push(catalog, changed);
+                renew(catalog, changed);
             }
         }
         catalog.clear_changed();
-        while (!heap_.empty()) {
-            const Entry least = heap_.front();
-            site = least.second;
-            if (least.first == keys_[site] && has_several(catalog.labels(site))) {
-                return true;
-            }
-            if (least.first == keys_[site]) {
-                keys_[site] = kNoKey;  // a choice that is taken back brings it here again
-            }
-            std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-            heap_.pop_back();
+        if (keys_.least() == LeastKey::kNoKey) {
+            return false;
         }
-        return false;
+        site = static_cast<Site>(keys_.first_least());
+        return true;
     }
 
     // As of ScanPicker; it follows the catalog by itself.
@@ -106,31 +98,22 @@ class EntropyPicker {
     void go_back(std::size_t /*position*/) {}
 
   private:
-    using Entry = std::pair<std::uint64_t, Site>;
-
-    static constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
-
     template <class CatalogType>
-    void push(const CatalogType& catalog, Site site) {
-        if (!has_several(catalog.labels(site))) {
-            return;
-        }
-        const std::uint64_t key =
-            std::uint64_t{weights_.at(site).entropy(catalog.labels(site))} << 32 | noise_[site];
-        if (key == keys_[site]) {
-            return;
-        }
-        keys_[site] = key;
-        heap_.emplace_back(key, site);
-        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+    void renew(const CatalogType& catalog, Site site) {
+        const auto labels = catalog.labels(site);
+        keys_.set(
+            site,
+            has_several(labels)
+                ? std::uint64_t{weights_.at(site).entropy(labels)} << 32 | noise_[site]
+                : LeastKey::kNoKey
+        );
     }
 
     PartWeights weights_;
-    std::vector<std::uint64_t> keys_;
     std::vector<std::uint32_t> noise_;
     std::vector<std::uint64_t> round_of_;  // of calls in which the site's key was looked at last
     std::uint64_t round_ = 0;
-    std::vector<Entry> heap_;
+    LeastKey keys_;
 };
 
 // How much a search takes back before it fails.

@@ -16,7 +16,10 @@ namespace modelsynth {
 // Cost: two bytes a site, nothing where one table serves all. Thread-safe.
 class SiteWeights {
   public:
-    explicit SiteWeights(LabelWeights everywhere) { tables_.push_back(std::move(everywhere)); }
+    explicit SiteWeights(LabelWeights everywhere) {
+        tables_.push_back(std::move(everywhere));
+        tables_.front().add_up_groups();
+    }
 
     // Requires: every number is that of a table (checked).
     SiteWeights(std::vector<LabelWeights> tables, std::vector<std::uint16_t> table_of_site);

@@ -129,11 +129,15 @@ bool Ac4Catalog::propagate() {
 void Ac4Catalog::restore(const Ac4State& state) {
     state_ = state;  // of equal sizes: copied in place
     removals_.clear();
+    tracking_ = false;
 }
 
 bool Ac4Catalog::remove(Site site, Label label) {
     state_.possible.data()[site * words_ + label / kWordBits] &= ~(Word{1} << (label % kWordBits));
     removals_.push_back({site, label});
+    if (tracking_) {
+        changed_.push_back(site);
+    }
     return --state_.left_count.data()[site] != 0;
 }
 
@@ -170,7 +174,10 @@ struct Ac4Peer::Workspace {
     std::vector<std::uint16_t> domains;
 };
 
-Ac4Peer::Ac4Peer(const discrete::Problem& problem) : problem_(problem), rules_(problem.relations) {}
+Ac4Peer::Ac4Peer(const discrete::Problem& problem, const Ac4Options& options)
+    : problem_(problem), options_(options), rules_(problem.relations) {
+    check(options.order != Order::kRandom, "the peer knows no random order");
+}
 
 Ac4Peer::~Ac4Peer() = default;
 
@@ -195,7 +202,7 @@ PeerModel Ac4Peer::in_blocks(
         const auto attempts =
             modify(schedule[block], model.labels, {seed, static_cast<std::uint32_t>(block), 0, 0});
         ++(attempts ? model.accepted : model.reverted);
-        model.attempts += attempts.value_or(kAttempts);
+        model.attempts += attempts.value_or(options_.attempts);
     }
     return model;
 }
@@ -219,7 +226,7 @@ std::optional<std::uint32_t> Ac4Peer::modify(
         start = &workspace.bordered;
     }
     key.purpose = kPurposeSearch;
-    for (key.attempt = 1; key.attempt <= kAttempts; ++key.attempt) {
+    for (key.attempt = 1; key.attempt <= options_.attempts; ++key.attempt) {
         if (key.attempt > 1) {
             catalog.restore(*start);
         }
@@ -236,15 +243,19 @@ std::optional<std::uint32_t> Ac4Peer::modify(
 bool Ac4Peer::attempt(Workspace& workspace, const RandomKey& key) const {
     Ac4Catalog& catalog = workspace.catalog;
     RandomStream random(key);
-    for (const Site site : workspace.scan) {
-        if (catalog.has_several(site)) {
+    const auto run = [&](auto picker) {
+        Site site = 0;
+        while (picker.next(catalog, site)) {
             catalog.assign(site, problem_.weights.table(0).draw(catalog.labels(site), random));
             if (!catalog.propagate()) {
                 return false;
             }
         }
-    }
-    return true;
+        return true;
+    };
+    return options_.order == Order::kScan
+               ? run(ScanPicker(workspace.scan))
+               : run(EntropyPicker(catalog, PartWeights{problem_.weights, {}}, random));
 }
 
 bool Ac4Peer::narrow_border(const GridPart& part, std::span<const Label> model, Ac4Catalog& catalog)

@@ -5,6 +5,7 @@
 #include "solver/core/label_set.h"
 #include "solver/core/random.h"
 #include "solver/core/relations.h"
+#include "solver/core/search.h"
 #include "solver/discrete/problem.h"
 
 #include <cstddef>
@@ -72,16 +73,23 @@ class Ac4Catalog {
     // Removes what lost its support, until nothing changes or some site is empty.
     [[nodiscard]] bool propagate();
 
+    [[nodiscard]] std::size_t site_count() const { return state_.left_count.size(); }
+
     [[nodiscard]] std::span<const Word> labels(Site site) const {
         return {state_.possible.data() + site * words_, words_};
     }
-
-    [[nodiscard]] bool has_several(Site site) const { return state_.left_count.data()[site] > 1; }
 
     [[nodiscard]] const Ac4State& state() const { return state_; }
 
     // Requires: a state of this catalog, or of one like it, after propagate().
     void restore(const Ac4State& state);
+
+    // As of Catalog, for pickers that follow changes; restore() ends it.
+    void track_changes() { tracking_ = true; }
+
+    [[nodiscard]] std::span<const Site> changed() const { return changed_; }
+
+    void clear_changed() { changed_.clear(); }
 
   private:
     struct Removal {
@@ -98,6 +106,8 @@ class Ac4Catalog {
     std::size_t words_;
     Ac4State state_;
     std::vector<Removal> removals_;  // a stack of those whose neighbours do not know yet
+    std::vector<Site> changed_;
+    bool tracking_ = false;
 };
 
 struct PeerModel {
@@ -107,16 +117,18 @@ struct PeerModel {
     std::uint32_t attempts = 0;  // of all blocks
 };
 
-// Merrell's synthesis on that catalog: columns one after the other, from the bottom up, the labels
-// drawn by the problem's weights; an attempt ends at the first empty cell, nothing is taken back.
-// What does not depend on the seed is kept from model to model.
-// Not thread-safe. Requires: the problem outlives it.
+struct Ac4Options {
+    Order order = Order::kScan;   // or kMinEntropy, as wave function collapse does it
+    std::uint32_t attempts = 20;  // at a block, or at the whole at once
+};
+
+// Merrell's synthesis on that catalog: columns one after the other, from the bottom up, or another
+// order; the labels drawn by the problem's weights; an attempt ends at the first empty cell,
+// nothing is taken back. What does not depend on the seed is kept from model to model. Not
+// thread-safe. Requires: the problem outlives it; no order but those two (checked).
 class Ac4Peer {
   public:
-    // Of a block, or of the whole at once.
-    static constexpr std::uint32_t kAttempts = 20;
-
-    explicit Ac4Peer(const discrete::Problem& problem);
+    explicit Ac4Peer(const discrete::Problem& problem, const Ac4Options& options = {});
     ~Ac4Peer();
 
     // Algorithm 3.1. Nothing when every attempt failed.
@@ -140,6 +152,7 @@ class Ac4Peer {
     bool attempt(Workspace& workspace, const RandomKey& key) const;
 
     const discrete::Problem& problem_;
+    Ac4Options options_;
     Ac4Rules rules_;
     std::vector<std::unique_ptr<Workspace>> workspaces_;  // one for every size of a block
 };

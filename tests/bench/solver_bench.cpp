@@ -20,12 +20,11 @@
 #include "solver/discrete/synthesis.h"
 #include "solver/examples/built_in.h"
 #include "tests/bench/ac4_peer.h"
+#include "tests/bench/timing.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -40,6 +39,7 @@ namespace {
 
 namespace discrete = modelsynth::discrete;
 using modelsynth::GridSize;
+using modelsynth::bench::median;
 
 // Keeps the initial model when there is somebody to keep it for.
 class InitialModelKeeper final : public modelsynth::Observer {
@@ -101,26 +101,13 @@ struct Ours {
 // Runs `solve` and adds how long it took: to `first` before the first seed.
 template <class Solve>
 void add_time(Times& times, int seed, Solve solve) {
-    const auto begun = std::chrono::steady_clock::now();
-    const std::clock_t processor_begun = std::clock();
-    solve();
-    const std::clock_t processor_taken = std::clock() - processor_begun;
-    const std::chrono::duration<double, std::milli> taken =
-        std::chrono::steady_clock::now() - begun;
+    const modelsynth::bench::Taken taken = modelsynth::bench::time_of(solve);
     if (seed < 0) {
-        times.first = taken.count();
+        times.first = taken.milliseconds;
         return;
     }
-    times.milliseconds.push_back(taken.count());
-    times.processor_milliseconds.push_back(
-        1000 * static_cast<double>(processor_taken) / CLOCKS_PER_SEC
-    );
-}
-
-double median(std::span<const double> values) {
-    std::vector<double> sorted(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
+    times.milliseconds.push_back(taken.milliseconds);
+    times.processor_milliseconds.push_back(taken.processor_milliseconds);
 }
 
 // In percent of a model's cells, on average over the models that were made.

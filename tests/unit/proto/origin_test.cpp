@@ -267,6 +267,19 @@ TEST_F(Origin, ConstraintsGoWithTheirPlaces) {
     EXPECT_EQ(own[0]["cells"], Json::parse("[[3, 0, 4]]"));
 }
 
+TEST_F(Origin, ASymmetryStaysAboutTheMiddleOfTheModelItWasAskedOf) {
+    finish("a", R"({"solver": "discrete", "example": "castle", "parameters": {"size": [9, 8, 9],
+        "constraints": [{"kind": "symmetry", "rotate": 4}, {"kind": "symmetry", "reflect": "x",
+        "box": {"min": [0, 0, 0], "max": [4, 8, 4]}},
+        {"kind": "symmetry", "translate": [3, 0, 0]}]}})");
+    const Json moved = echo_from(
+        "a", R"(, "at": [5, 0, 2])", R"(, "parameters": {"size": [14, 8, 11]})"
+    )["parameters"]["constraints"];
+    EXPECT_EQ(moved[0]["box"], Json::parse(R"({"min": [5, 0, 2], "max": [14, 8, 11]})"));
+    EXPECT_EQ(moved[1]["box"], Json::parse(R"({"min": [5, 0, 2], "max": [9, 8, 6]})"));
+    EXPECT_FALSE(moved[2].contains("box"));
+}
+
 TEST_F(Origin, ConstraintsThatWereStretchedOverTheModelDoNotGoWithAnotherSize) {
     finish("a", R"({"solver": "discrete", "example": "castle", "parameters": {"size": [9, 8, 9],
         "constraints": [{"kind": "probability", "pieces": ["grass"], "weight": 2,

@@ -203,21 +203,22 @@ TEST(Problems, AreAsTheStandardWritesThem) {
 
 TEST(Tally, ComesBackFromItsTextAndNothingElseDoes) {
     const SearchTally tally = {{7, 0, 4'294'967'295, 2}, 3, 1, 1'000'000'000'000};
-    EXPECT_EQ(encode_tally(tally), "[7,0,4294967295,2,3,1,1000000000000]");
+    EXPECT_EQ(encode_tally(tally), "[7,0,4294967295,2,0,0,0,3,1,1000000000000]");
     EXPECT_EQ(decode_tally(encode_tally(tally)), tally);
-    EXPECT_EQ(decode_tally("[0,0,0,0,0,0,0]"), SearchTally());
+    EXPECT_EQ(decode_tally("[0,0,0,0,0,0,0,0,0,0]"), SearchTally());
     for (const char* text :
          {"",
           "[",
           "{}",
           "7",
-          "[7,0,0,2,3,4]",
-          "[7,0,0,2,3,4,5,6]",
-          "[7,0,-1,2,3,4,5]",
-          "[4294967296,0,0,0,0,0]",
-          "[0,0,0,0,4294967296,0]",
-          "[1.5,0,0,0,0,0]",
-          "[\"1\",0,0,0,0,0]"}) {
+          "[7,0,0,2,3,4,5,6,7]",
+          "[7,0,0,2,3,4,5,6,7,8,9]",
+          "[7,0,-1,2,3,4,5,6,7,8]",
+          "[4294967296,0,0,0,0,0,0,0,0,0]",
+          "[0,0,0,0,0,0,0,4294967296,0,0]",
+          "[0,0,0,0,0,0,0,0,4294967296,0]",
+          "[1.5,0,0,0,0,0,0,0,0,0]",
+          "[\"1\",0,0,0,0,0,0,0,0,0]"}) {
         EXPECT_FALSE(decode_tally(text)) << text;
     }
 }

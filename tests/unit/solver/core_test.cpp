@@ -98,6 +98,28 @@ TEST(LabelWeights, EntropyOfEqualLabelsIsTheLogOfTheirNumber) {
     }
 }
 
+TEST(LabelWeights, EntropyIsTheSameByGroups) {
+    RandomStream random({8, 0, 0, 0});
+    for (const std::size_t label_count : {1U, 3U, 4U, 63U, 64U, 66U, 200U}) {
+        std::vector<double> given;
+        for (std::size_t label = 0; label < label_count; ++label) {
+            given.push_back(random.below(4) == 0 ? 0 : random.below(1000));
+        }
+        const LabelWeights weights(given);
+        LabelWeights by_groups = weights;
+        by_groups.add_up_groups();
+        for (int i = 0; i < 50; ++i) {
+            LabelSet set(label_count);
+            for (std::size_t label = 0; label < label_count; ++label) {
+                if (random.below(50) >= static_cast<std::uint32_t>(i)) {
+                    set.insert(static_cast<Label>(label));
+                }
+            }
+            EXPECT_EQ(by_groups.entropy(set.words()), weights.entropy(set.words()));
+        }
+    }
+}
+
 TEST(GridTopology, JoinsNeighboursBothWaysWithReverseRelations) {
     for (const Periodic periodic : {Periodic{}, Periodic{true, false, true}, {true, true, true}}) {
         const GridTopology grid({3, 2, 4}, periodic);
