@@ -1,7 +1,7 @@
 #include "proto/explanation_codec.h"
 
 #include "proto/limits.h"
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 
 #include <utility>
 
@@ -11,7 +11,7 @@ namespace {
 
 OrderedJson array_of(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
 
-OrderedJson document_of(const discrete::Conflict::NamedCell& place) {
+OrderedJson document_of(const discrete::Contradiction::NamedCell& place) {
     OrderedJson labels = OrderedJson::array();
     for (const std::string& label : place.labels) {
         if (labels.size() == kLabelsListedMax) {
@@ -26,7 +26,7 @@ OrderedJson document_of(const discrete::Conflict::NamedCell& place) {
     return document;
 }
 
-OrderedJson document_of(const discrete::Conflict& conflict) {
+OrderedJson document_of(const discrete::Contradiction& conflict) {
     OrderedJson constraints = OrderedJson::array();
     for (const auto& constraint : conflict.constraints) {
         constraints.push_back({{"index", constraint.index}, {"kind", constraint.kind}});
@@ -48,7 +48,7 @@ OrderedJson document_of(const discrete::Conflict& conflict) {
 }  // namespace
 
 void add_explanation(OrderedJson& document, const std::any& explanation) {
-    if (const auto* conflict = std::any_cast<discrete::Conflict>(&explanation)) {
+    if (const auto* conflict = std::any_cast<discrete::Contradiction>(&explanation)) {
         document["conflict"] = document_of(*conflict);
     } else if (const auto* dead_ends = std::any_cast<discrete::DeadEnds>(&explanation)) {
         OrderedJson hottest = OrderedJson::array();

@@ -1,7 +1,7 @@
 #include "solver/discrete/initial_model.h"
 
 #include "solver/discrete/constraint_reader.h"
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/discrete/mender.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/plain_layers.h"

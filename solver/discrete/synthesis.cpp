@@ -5,7 +5,7 @@
 #include "solver/discrete/block_solver.h"
 #include "solver/discrete/box_labels.h"
 #include "solver/discrete/constraint_reader.h"
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/objective.h"

@@ -5,8 +5,8 @@
 #include "solver/discrete/explanation/explain.h"
 
 #include "solver/discrete/explanation/cause.h"
-#include "solver/discrete/explanation/conflict.h"
 #include "solver/discrete/explanation/conflict_cells.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/discrete/explanation/effort.h"
 #include "solver/discrete/explanation/irreducible.h"
 #include "solver/discrete/explanation/judge.h"
@@ -61,7 +61,7 @@ class Explainer {
                 return empty ? leave_nothing(some, *empty)
                              : verdict_of(some) == Verdict::kImpossible;
             });
-        Conflict conflict;
+        Contradiction conflict;
         std::vector<Cause> spare;
         conflict.is_minimal = is_each_needed(causes, spare);
         name_causes(causes, conflict);
@@ -124,7 +124,7 @@ class Explainer {
         return is_each;
     }
 
-    void name_causes(std::span<const Cause> causes, Conflict& conflict) const {
+    void name_causes(std::span<const Cause> causes, Contradiction& conflict) const {
         for (const Cause& cause : causes) {
             switch (cause.kind) {
                 case Cause::Kind::kSide:
@@ -148,7 +148,9 @@ class Explainer {
         }
     }
 
-    void find_cells(std::span<const Cause> causes, const Problem& problem, Conflict& conflict) {
+    void find_cells(
+        std::span<const Cause> causes, const Problem& problem, Contradiction& conflict
+    ) {
         std::vector<Cause> removed;
         for (const Cause& cause : causes) {
             if (cause.kind == Cause::Kind::kRemoved) {
@@ -189,15 +191,16 @@ class Explainer {
     }
 
     [[nodiscard]] std::string in_words(
-        std::span<const Cause> causes, const Problem& problem, const Conflict& conflict
+        std::span<const Cause> causes, const Problem& problem, const Contradiction& conflict
     ) {
         std::string text = "no model of this size exists: ";
         const std::vector<std::string> names = names_of(causes);
-        text += names.empty()       ? "the pieces of the example cannot fill it"
+        text += names.empty() ? list_names(example_, problem.domains.at(0)) +
+                                    " cannot fill it, whatever stands at its sides"
                 : names.size() == 1 ? names.front() + " cannot hold"
                                     : join_words(names) + " cannot hold together";
         std::vector<std::string> cells;
-        for (const Conflict::NamedCell& place : conflict.cells) {
+        for (const Contradiction::NamedCell& place : conflict.cells) {
             if (cells.size() == kCellsInWordsMax) {
                 cells.push_back(
                     std::to_string(conflict.cells.size() - kCellsInWordsMax) + " more cells"
@@ -209,7 +212,9 @@ class Explainer {
         return text + (cells.empty() ? "" : ", see " + join_words(cells));
     }
 
-    [[nodiscard]] std::string in_words(const Problem& problem, const Conflict::NamedCell& place) {
+    [[nodiscard]] std::string in_words(
+        const Problem& problem, const Contradiction::NamedCell& place
+    ) {
         const auto site = static_cast<Site>(parameters_.size->index(place.cell));
         std::string text = "cell " + name_cell(place.cell);
         if (!place.labels.empty()) {

@@ -10,7 +10,7 @@
 namespace modelsynth::discrete {
 
 // The error for a request that was proved impossible, with the fewest causes found that cannot hold
-// together and the fewest cells found at which it shows: a Conflict as its explanation, and in
+// together and the fewest cells found at which it shows: a Contradiction as its explanation, and in
 // words for a person. `error` is what is known already; it comes back as it is when no proof is
 // found again, as of a contradiction that only the search with some seed came upon.
 // Requires: find_faults() found nothing (checked); the problem is that of the request, of

@@ -4,7 +4,7 @@
 #include "proto/job_request.h"
 #include "proto/problem.h"
 #include "proto/timestamp.h"
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/examples/built_in.h"
 
 #include <gtest/gtest.h>
@@ -223,8 +223,8 @@ TEST(Tally, ComesBackFromItsTextAndNothingElseDoes) {
     }
 }
 
-discrete::Conflict conflict_at_a_cell_of(std::size_t labels) {
-    discrete::Conflict conflict;
+discrete::Contradiction conflict_at_a_cell_of(std::size_t labels) {
+    discrete::Contradiction conflict;
     conflict.sides = {"bottom"};
     conflict.constraints = {{2, "count"}};
     conflict.cells = {{{1, 2, 3}, std::vector<std::string>(labels, "a")}};

@@ -1,6 +1,6 @@
 // What is said of failures, checked by trying everything on random tiny requests.
 
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/synthesis.h"
@@ -189,7 +189,7 @@ std::vector<Named> all_causes(const Parameters& parameters) {
     return all;
 }
 
-std::vector<Named> causes_of(const Parameters& parameters, const Conflict& conflict) {
+std::vector<Named> causes_of(const Parameters& parameters, const Contradiction& conflict) {
     std::vector<Named> causes;
     for (const std::string& name : conflict.sides) {
         const auto side = std::find(kSideNames.begin(), kSideNames.end(), name);
@@ -232,7 +232,7 @@ std::set<std::string> names_of(const Example& example, const std::set<Label>& la
 
 // What is wrong with a conflict, or nothing.
 std::optional<std::string> find_fault(
-    const Example& example, const Parameters& parameters, const Conflict& conflict
+    const Example& example, const Parameters& parameters, const Contradiction& conflict
 ) {
     const std::vector<Named> causes = causes_of(parameters, conflict);
     std::set<Named> others;
@@ -308,7 +308,7 @@ void check_case(std::uint64_t seed, bool with_member_rules, Tally& tally) {
     }
     ASSERT_EQ(made.error().code, ErrorCode::kContradiction) << seed;
     ASSERT_FALSE(can_be) << seed;
-    const auto* conflict = std::any_cast<Conflict>(&made.error().explanation);
+    const auto* conflict = std::any_cast<Contradiction>(&made.error().explanation);
     ASSERT_NE(conflict, nullptr) << seed << ": " << made.error().message;
     const auto fault = find_fault(example, parameters, *conflict);
     ASSERT_FALSE(fault) << seed << ": " << *fault << ": " << made.error().message;
@@ -383,10 +383,10 @@ Result<Synthesis> make_one_too_many(std::int32_t cells) {
 
 TEST(Explanation, TellsThirtyTwoCellsAtMost) {
     const Error few = make_one_too_many(32).error();
-    EXPECT_EQ(std::any_cast<Conflict>(few.explanation).cells.size(), std::size_t{32});
+    EXPECT_EQ(std::any_cast<Contradiction>(few.explanation).cells.size(), std::size_t{32});
     EXPECT_NE(few.message.find("29 more cells"), std::string::npos) << few.message;
     const Error many = make_one_too_many(33).error();
-    const auto conflict = std::any_cast<Conflict>(many.explanation);
+    const auto conflict = std::any_cast<Contradiction>(many.explanation);
     EXPECT_TRUE(conflict.cells.empty());
     EXPECT_EQ(conflict.constraints.size(), std::size_t{2});
     EXPECT_TRUE(conflict.is_minimal);
@@ -402,7 +402,7 @@ TEST(Explanation, NamesEightCausesAtMost) {
     for (const std::uint32_t most : {6U, 7U, 8U}) {
         parameters.constraints.push_back({Count{0, most}, {"b"}});
         const Error error = make(make_any(), fill_defaults(parameters, make_any()), 1).error();
-        const auto conflict = std::any_cast<Conflict>(error.explanation);
+        const auto conflict = std::any_cast<Contradiction>(error.explanation);
         EXPECT_EQ(conflict.constraints.size(), most + 2);
         EXPECT_TRUE(conflict.is_minimal);
         const std::string last =
@@ -457,7 +457,7 @@ TEST(Explanation, OfWhatIsPossibleIsWhatWasKnown) {
 // A floor of a's of which one cell is made anew.
 class OriginExplanation : public ::testing::Test {
   protected:
-    Conflict conflict_with(const Constraint& constraint) {
+    Contradiction conflict_with(const Constraint& constraint) {
         Parameters parameters;
         parameters.size = GridSize{3, 1, 3};
         parameters.constraints = {{Fixed{}, {"a", "b"}}, constraint};
@@ -472,12 +472,12 @@ class OriginExplanation : public ::testing::Test {
             preparation ? synthesise(**preparation, 1, observer, {}).error() : preparation.error();
         EXPECT_EQ(error.code, ErrorCode::kContradiction) << error.message;
         EXPECT_NE(error.message.find("the model that this one starts from"), std::string::npos);
-        return std::any_cast<Conflict>(error.explanation);
+        return std::any_cast<Contradiction>(error.explanation);
     }
 };
 
 TEST_F(OriginExplanation, NamesWhatIsKeptBesideACount) {
-    const Conflict conflict = conflict_with({Count{2, {}}, {"b"}});
+    const Contradiction conflict = conflict_with({Count{2, {}}, {"b"}});
     EXPECT_TRUE(conflict.has_origin);
     ASSERT_EQ(conflict.constraints.size(), std::size_t{1});
     EXPECT_EQ(conflict.constraints[0].index, std::size_t{1});
@@ -488,7 +488,7 @@ TEST_F(OriginExplanation, NamesWhatIsKeptBesideACount) {
 TEST_F(OriginExplanation, NamesAKeptCellWhereSomethingElseIsFixed) {
     Constraint fixed = {Fixed{}, {"b"}};
     fixed.region.cells = {{1, 0, 1}, {2, 0, 1}};
-    const Conflict conflict = conflict_with(fixed);
+    const Contradiction conflict = conflict_with(fixed);
     EXPECT_TRUE(conflict.has_origin);
     ASSERT_EQ(conflict.cells.size(), std::size_t{1});
     EXPECT_EQ(conflict.cells[0].cell, (Cell{2, 0, 1}));

@@ -1,7 +1,7 @@
 #include "solver/discrete/explanation/irreducible.h"
 
 #include "solver/core/random.h"
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 
 #include <gtest/gtest.h>
 

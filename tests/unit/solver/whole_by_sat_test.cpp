@@ -3,7 +3,7 @@
 
 #include "solver/discrete/whole_by_sat.h"
 
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
@@ -123,7 +123,7 @@ TEST(WholeBySat, ProvesThatAMutilatedChessboardCannotBeCovered) {
     const auto made = make(example, parameters, 1);
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::kContradiction);
-    const auto* conflict = std::any_cast<Conflict>(&made.error().explanation);
+    const auto* conflict = std::any_cast<Contradiction>(&made.error().explanation);
     ASSERT_NE(conflict, nullptr) << made.error().message;
     // Were one side open, a slab could reach over it and only one would be left over.
     const std::set<std::string> sides(conflict->sides.begin(), conflict->sides.end());

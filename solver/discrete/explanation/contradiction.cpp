@@ -1,4 +1,4 @@
-#include "solver/discrete/explanation/conflict.h"
+#include "solver/discrete/explanation/contradiction.h"
 
 #include <algorithm>
 #include <numeric>

@@ -11,7 +11,7 @@
 namespace modelsynth::discrete {
 
 // Why no model exists: what cannot hold together. Travels in Error::explanation.
-struct Conflict {
+struct Contradiction {
     struct NamedConstraint {
         std::size_t index = 0;  // among those of the request
         std::string kind;
