@@ -144,18 +144,24 @@ LabelSet usable_labels(const Example& example, const std::vector<double>& weight
 }
 
 Relations find_transitions(const Example& example) {
-    Relations relations(example.pieces.size(), {1, 0, 3, 2, 5, 4});
+    const std::size_t count = example.pieces.size();
+    Relations relations(count, {1, 0, 3, 2, 5, 4});
     const GridSize size = example.size;
+    // Most pairs of a large example stand in it many times, and a bit is cheap to look at.
+    std::vector<bool> is_known(3 * count * count);
     for_each_cell(Box::whole(size), [&](const Cell& cell) {
         for (std::size_t direction = 0; direction < kDirectionCount; direction += 2) {
             const Cell step = kDirectionSteps[direction];
             const Cell next = {cell.x + step.x, cell.y + step.y, cell.z + step.z};
-            if (size.contains(next)) {
-                relations.allow(
-                    static_cast<RelationId>(direction),
-                    example.cells[size.index(cell)],
-                    example.cells[size.index(next)]
-                );
+            if (!size.contains(next)) {
+                continue;
+            }
+            const Label a = example.cells[size.index(cell)];
+            const Label b = example.cells[size.index(next)];
+            const std::size_t pair = (direction / 2 * count + a) * count + b;
+            if (!is_known[pair]) {
+                is_known[pair] = true;
+                relations.allow(static_cast<RelationId>(direction), a, b);
             }
         }
     });

@@ -220,17 +220,19 @@ class Run {
     SynthesisStats stats_;
 };
 
-Result<Synthesis> make_one(
-    Preparation& preparation,
-    std::uint64_t seed,
-    Observer& observer,
-    const std::stop_token& stop,
-    const Checkpoint* from,
-    std::uint32_t threads
-) {
-    const auto& blocks = *preparation.parameters().blocks;
-    Run run(preparation, seed, observer, stop);
-    return blocks ? run.in_blocks(*blocks, from, threads) : run.at_once(from);
+// How a model is made, its seed aside.
+struct Circumstances {
+    Preparation& preparation;
+    Observer& observer;
+    const std::stop_token& stop;
+    const Checkpoint* from = nullptr;
+    std::uint32_t threads = 1;
+};
+
+Result<Synthesis> make_one(const Circumstances& how, std::uint64_t seed) {
+    const auto& blocks = *how.preparation.parameters().blocks;
+    Run run(how.preparation, seed, how.observer, how.stop);
+    return blocks ? run.in_blocks(*blocks, how.from, how.threads) : run.at_once(how.from);
 }
 
 class NoObserver final : public Observer {
@@ -241,23 +243,17 @@ class NoObserver final : public Observer {
 };
 
 Result<Synthesis> make_best_of(
-    std::uint32_t count,
-    Preparation& preparation,
-    std::uint64_t seed,
-    Observer& observer,
-    const std::stop_token& stop,
-    const Checkpoint* from,
-    std::uint32_t threads
+    std::uint32_t candidates, const Circumstances& how, std::uint64_t seed
 ) {
     auto best = find_best_seed(
-        preparation.example(),
-        preparation.parameters(),
-        count,
+        how.preparation.example(),
+        how.preparation.parameters(),
+        candidates,
         seed,
-        threads,
-        [&](std::uint64_t candidate) -> Result<std::vector<Label>> {
+        how.threads,
+        [&how](std::uint64_t candidate) -> Result<std::vector<Label>> {
             NoObserver nobody;
-            auto made = make_one(preparation, candidate, nobody, stop, nullptr, 1);
+            auto made = make_one({how.preparation, nobody, how.stop}, candidate);
             if (!made) {
                 return tl::unexpected(std::move(made.error()));
             }
@@ -267,7 +263,7 @@ Result<Synthesis> make_best_of(
     if (!best) {
         return tl::unexpected(std::move(best.error()));
     }
-    auto made = make_one(preparation, best->seed, observer, stop, from, threads);
+    auto made = make_one(how, best->seed);
     if (made) {
         made->stats.objective = best->value;
         made->stats.candidates = std::move(best->candidates);
@@ -296,9 +292,8 @@ Result<Synthesis> synthesise(
     std::uint32_t threads
 ) {
     const std::uint32_t candidates = candidates_asked_for(preparation.parameters());
-    auto made = candidates == 0
-                    ? make_one(preparation, seed, observer, stop, from, threads)
-                    : make_best_of(candidates, preparation, seed, observer, stop, from, threads);
+    const Circumstances how = {preparation, observer, stop, from, threads};
+    auto made = candidates == 0 ? make_one(how, seed) : make_best_of(candidates, how, seed);
     if (!made && made.error().code == ErrorCode::kContradiction) {
         return tl::unexpected(explain(
             std::move(made.error()),

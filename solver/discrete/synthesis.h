@@ -23,11 +23,13 @@ struct Synthesis {
 // (Eq. 3.3): Algorithm 3.4, or Algorithm 3.1 where `parameters.blocks` asks for the whole at once.
 // With `from`, a checkpoint of a run with equal arguments, in blocks: goes on after its blocks;
 // the result is that of a run without.
+// With several threads, blocks that do not touch are modified at the same time; the observer is
+// called on this one alone, in order, and nothing it sees is different.
 // Where the best of several models is asked for, all are made first, unseen, and the best once
-// more. With several threads, blocks that do not touch are modified at the same time; the observer
-// is called on this one alone, in order, and nothing it sees is different. Ensures:  equal
-// arguments give equal labels and equal reports, on any machine. Fails:    kContradiction, kGaveUp,
-// kTooLarge, kCancelled when `stop` is requested: within one
+// more.
+//
+// Ensures:  equal arguments give equal labels and equal reports, on any machine.
+// Fails:    kContradiction, kGaveUp, kTooLarge, kCancelled when `stop` is requested: within one
 //           block and within one propagation.
 // Cost:     O(cells) blocks of constant size; memory: 4 bytes a cell and one block's catalog.
 [[nodiscard]] Result<Synthesis> synthesise(

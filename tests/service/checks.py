@@ -12,7 +12,8 @@ import threading
 ENDED = ("succeeded", "failed", "cancelled")
 
 # Keeps one worker busy for many minutes unless it is cancelled.
-ENDLESS = {"size": [100, 10, 100], "blocks": {"passes": 100}}
+ENDLESS = {"size": [300, 10, 300],
+           "blocks": {"size": [20, 10, 20], "overlap": 0.75, "passes": 60}}
 
 # Three stripes along x, each as long as one likes along z: x and z cannot be mixed up unnoticed.
 STRIPES = {

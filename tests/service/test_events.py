@@ -8,7 +8,7 @@ import time
 import pytest
 
 from event_reader import EventReader, texts
-from workload import ENDLESS_JOB, SMALL_JOB, STEADY_JOB, TILES_JOB, submit
+from workload import DECLINED_JOB, ENDLESS_JOB, SMALL_JOB, STEADY_JOB, TILES_JOB, submit
 
 TERMINAL = {"succeeded", "failed", "cancelled"}
 TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z")
@@ -75,7 +75,8 @@ def test_the_queued_event_tells_the_position(finished):
     assert events[0]["position"] == 0
 
 
-@pytest.mark.parametrize("workload", [SMALL_JOB, TILES_JOB], ids=["infallible", "fallible"])
+@pytest.mark.parametrize("workload", [SMALL_JOB, TILES_JOB, DECLINED_JOB],
+                         ids=["infallible", "fallible", "declined"])
 def test_block_events_tell_place_outcome_and_progress(server, workload):
     job = server.wait(submit(server, workload)["id"])
     events = read_all(server, job["id"])
@@ -95,7 +96,7 @@ def test_block_events_tell_place_outcome_and_progress(server, workload):
     outcomes = [block["outcome"] for block in blocks]
     assert outcomes.count("accepted") == job["result"]["stats"]["blocks_accepted"]
     assert outcomes.count("reverted") == job["result"]["stats"]["blocks_reverted"]
-    if workload is TILES_JOB:
+    if workload is DECLINED_JOB:
         assert "reverted" in outcomes
 
 

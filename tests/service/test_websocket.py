@@ -19,7 +19,7 @@ from websocket_client import (
     BINARY, CLOSE, CONTINUATION, GLB, GLB_WHOLE, LABELS, LABELS_WHOLE, PING, PONG, TEXT,
     HandshakeRefused, LabelGrid, StateFrame, WebSocketClient)
 from workload import (
-    ENDLESS_JOB, SMALL_JOB, STEADY_JOB, SWEEP_JOB, TILES_JOB, YARD, submit)
+    DECLINED_JOB, ENDLESS_JOB, SMALL_JOB, STEADY_JOB, SWEEP_JOB, TILES_JOB, YARD, submit)
 
 
 def connect(server, job, partial=None, after=None, **kwargs):
@@ -233,11 +233,11 @@ def test_label_frames_replayed_from_the_start_give_the_finished_model(server):
 
 
 def test_label_frames_give_the_finished_model_though_blocks_were_reverted(server):
-    job = submit(server, TILES_JOB)
+    job = submit(server, DECLINED_JOB)
     messages = watch(server, job, partial="labels")
     check_order(messages)
     assert "reverted" in [event.get("outcome") for event in events_of(messages)]
-    assert replayed(messages, TILES_JOB["size"]) == labels_of(server, job)
+    assert replayed(messages, DECLINED_JOB["size"]) == labels_of(server, job)
 
 
 def test_label_frames_give_the_finished_model_when_it_is_solved_at_once(server):

@@ -40,18 +40,27 @@ def _wang_tiles(count, colors, seed):
     }
 
 
-# Many of its blocks are reverted.
+# Most of its blocks need more than one attempt.
 TILES = _wang_tiles(20, 4, 5)
 TILES_JOB = {"example": TILES, "size": (60, 1, 60), "parameters": {
     "weights": "uniform", "blocks": {"size": [8, 1, 8], "overlap": 0, "attempts": 1}}}
 
-# A job in the middle of which there is time to do something: thousands of blocks, a second or more.
-# Half of it is a passage of a few hundred milliseconds. A sanitizer needs fewer blocks for that.
-STEADY_PASSES = 9 if os.environ.get("MODELSYNTH_SANITIZED") else 30
-STEADY_JOB = {"example": YARD, "size": (100, 6, 100), "parameters": {
-    "weights": "uniform", "blocks": {"passes": STEADY_PASSES}}}
+# Many of its blocks are reverted, since they would have more cells of one tile.
+DECLINED_JOB = {**TILES_JOB, "parameters": {**TILES_JOB["parameters"], "constraints": [
+    {"kind": "objective", "terms": [
+        {"term": "count", "pieces": [TILES["pieces"][0]["name"]], "target": 0}]}]}}
 
-# As long, but no cell is made twice in different passes: what is lost of it stays lost.
+# A job in the middle of which there is time to do something: thousands of blocks, a second or more.
+# Half of it is a passage of a few hundred milliseconds. A sanitizer needs fewer and smaller blocks.
+_SANITIZED = bool(os.environ.get("MODELSYNTH_SANITIZED"))
+STEADY_PASSES = 9 if _SANITIZED else 60
+STEADY_JOB = {"example": YARD, "size": (100, 6, 100), "parameters": {
+    "weights": "uniform",
+    "blocks": {**({} if _SANITIZED else {"size": [20, 6, 20], "overlap": 0.75}),
+               "passes": STEADY_PASSES}}}
+
+# Thousands of blocks as well, but no cell is made twice in different passes: what is lost of it
+# stays lost.
 SWEEP_JOB = {"example": YARD, "size": (240, 6, 240), "parameters": {"weights": "uniform"}}
 
 # Dozens of blocks, done at once.
@@ -59,7 +68,7 @@ SMALL_JOB = {"example": YARD, "size": (30, 6, 30), "parameters": {"weights": "un
 
 # So long that it ends by being cancelled or killed only.
 ENDLESS_JOB = {"example": YARD, "size": (300, 6, 300), "parameters": {
-    "weights": "uniform", "blocks": {"passes": 50}}}
+    "weights": "uniform", "blocks": {"size": [40, 6, 40], "overlap": 0.875, "passes": 70}}}
 
 
 def submit(server, job, **more):
