@@ -95,6 +95,7 @@ TEST(BlockQueue, HandsABlockOutOnlyWhenNoEarlierOneThatItReadsIsUnfinished) {
                         solve(step.block);
                     } else {
                         EXPECT_EQ(step.block, reported++);
+                        const std::lock_guard lock(mutex);
                         EXPECT_TRUE(finished[step.block]);
                     }
                 }
