@@ -9,6 +9,7 @@
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/field.hpp>
@@ -62,6 +63,9 @@ struct Session {
     // The client has no state that the next block's frame could be laid upon: at the beginning,
     // and when a frame could not be had. A whole state comes first then.
     bool needs_whole = false;
+    // How often it is still waited for; see write_whole_of_block().
+    static constexpr int kPausesMax = 20;
+    int pauses_left = kPausesMax;
     std::uint64_t whole_seq = 0;  // what the whole state that was sent last includes
 };
 
@@ -164,6 +168,24 @@ net::awaitable<bool> write_whole(
     co_return co_await write(session, whole->bytes, true);
 }
 
+// The same for a block whose event was just read: it is on disk a moment before the live model has
+// its labels, so that is waited for; but not long, since a job that is solved again after a restart
+// takes its time to come so far.
+net::awaitable<bool> write_whole_of_block(Session& session, std::uint64_t seq) {
+    constexpr auto kPause = std::chrono::milliseconds(2);
+    bool open = co_await write_whole(session, seq);
+    while (open && session.needs_whole && session.pauses_left > 0) {
+        --session.pauses_left;
+        net::steady_timer timer(session.socket.get_executor(), kPause);
+        co_await timer.async_wait(kToken);
+        open = co_await write_whole(session, seq);
+    }
+    if (!session.needs_whole) {
+        session.pauses_left = Session::kPausesMax;
+    }
+    co_return open;
+}
+
 net::awaitable<bool> write_event(Session& session, const Event& event) {
     const std::string text = proto::event_json(event.seq, event.type, event.time, event.fields);
     if (!co_await write(session, text, false)) {
@@ -173,7 +195,7 @@ net::awaitable<bool> write_event(Session& session, const Event& event) {
         co_return true;
     }
     if (session.needs_whole) {  // then the block's frame is the whole state
-        co_return co_await write_whole(session, event.seq);
+        co_return co_await write_whole_of_block(session, event.seq);
     }
     if (event.seq <= session.whole_seq) {
         co_return true;  // included already
@@ -184,7 +206,7 @@ net::awaitable<bool> write_event(Session& session, const Event& event) {
     const auto frame = co_await on_pool(*session.context.pool, make);
     if (!frame) {
         session.needs_whole = true;
-        co_return co_await write_whole(session, event.seq);
+        co_return co_await write_whole_of_block(session, event.seq);
     }
     co_return co_await write(session, *frame, true);
 }
