@@ -23,7 +23,7 @@ class CellMap {
   public:
     // The cells that the symmetry speaks of are those of the region that have their image in it: in
     // a box, if that is all of the region, about its middle; else about the model's.
-    // Requires: find_symmetry_faults() found nothing.
+    // Requires: find_symmetry_fault() found nothing.
     CellMap(
         const Symmetry& symmetry, const Region& region, const GridSize& model, Periodic periodic
     );
