@@ -34,11 +34,11 @@ class JobStore {
     [[nodiscard]] virtual Stored<std::optional<Claim>> claim(proto::UnixMillis now) = 0;
 
     // Appends events of a running job, numbered in the commit that writes them, and its checkpoint
-    // in the same one. Under another solver version than the append before, the older checkpoint
-    // goes: it is of another model. Returns at once; `done` is called in order of the calls, on the
-    // store's thread, with the first seq once they are on disk. Blocks while too much waits to be
-    // written.
-    // Fails: kLeaseLost.
+    // and links to artifacts in the same one. Under another solver version than the append before,
+    // the older checkpoint and models go: they are not what this solver makes. Returns at once;
+    // `done` is called in order of the calls, on the store's thread, with the first seq once they
+    // are on disk. Blocks while too much waits to be written. Fails: kLeaseLost, kConflict when a
+    // digest is not stored.
     virtual void append(
         const Lease& lease,
         std::vector<NewEvent> events,
@@ -69,7 +69,7 @@ class JobStore {
     ) = 0;
 
     // How far the model of a job that has not ended well has come; nothing when no claim of it
-    // kept any, or when the job's "labels" tell it.
+    // kept any, or when the labels that the job left behind tell it.
     [[nodiscard]] virtual Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id
     ) = 0;
 

@@ -34,7 +34,7 @@ template <class T>
 using Stored = tl::expected<T, StoreError>;
 
 struct ArtifactLink {
-    std::string name;  // "model.glb", "labels", ...
+    std::string name;  // see artifact_names.h
     std::string digest;
 };
 
@@ -109,6 +109,8 @@ struct Progress {
     // Kept in place of an older one when given. Its seq is set by the store: the last event of
     // the append.
     std::optional<JobCheckpoint> checkpoint;
+    // Linked to the job from now on, whatever becomes of it.
+    std::vector<ArtifactLink> artifacts = {};
 };
 
 // How a job ended.

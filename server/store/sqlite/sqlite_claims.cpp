@@ -1,5 +1,6 @@
 // What workers ask of the embedded store: jobs to run, what became of them.
 
+#include "server/store/artifact_names.h"
 #include "server/store/sqlite/job_rows.h"
 #include "server/store/sqlite/sqlite_store.h"
 
@@ -34,18 +35,6 @@ void keep_checkpoint(
 
 void drop_checkpoint(Database& database, const std::string& id) {
     database.prepare("DELETE FROM checkpoint WHERE job_id = ?").bind(std::string_view(id)).run();
-}
-
-// What is known of the job's model was made by another solver and is of no use to this one.
-void begin_version(
-    Database& database, const std::string& id, const std::string& version, std::uint64_t base
-) {
-    drop_checkpoint(database, id);
-    database.prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
-        .bind(std::string_view(version))
-        .bind(base)
-        .bind(std::string_view(id))
-        .run();
 }
 
 }  // namespace
@@ -117,12 +106,25 @@ void SqliteStore::append(
                  is_new_version = row.text(1) != progress.solver_version;
              }
              if (is_new_version) {
-                 begin_version(database, lease.job_id, progress.solver_version, *first_seq - 1);
+                 // What is known of the job's models was made by another solver and is of no use
+                 // to this one.
+                 drop_checkpoint(database, lease.job_id);
+                 unlink_artifacts(database, lease.job_id, Unlinked::kMade);
+                 database
+                     .prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
+                     .bind(std::string_view(progress.solver_version))
+                     .bind(*first_seq - 1)
+                     .bind(std::string_view(lease.job_id))
+                     .run();
              }
              if (progress.checkpoint) {
                  keep_checkpoint(
                      database, lease.job_id, *progress.checkpoint, *first_seq + events.size() - 1
                  );
+             }
+             if (auto linked = link_artifacts(database, lease.job_id, progress.artifacts);
+                 !linked) {
+                 return linked;
              }
              bool has_block = false;
              for (const NewEvent& event : events) {
@@ -188,7 +190,7 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
         }
         const bool has_labels =
             std::any_of(kept.begin(), kept.end(), [](const ArtifactLink& artifact) {
-                return artifact.name == "labels";
+                return artifact.name == kPreviewArtifact || artifact.name == labels_artifact();
             });
         if (succeeded || has_labels) {
             // They tell more than it does.

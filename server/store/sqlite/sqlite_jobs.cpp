@@ -179,7 +179,7 @@ Stored<Job> SqliteStore::cancel(const std::string& id, UnixMillis now) {
 
 Stored<void> SqliteStore::erase(const std::string& id) {
     return writer_->call<void>([&](Database& database) -> Stored<void> {
-        unlink_artifacts(database, id, false);
+        unlink_artifacts(database, id, Unlinked::kAll);
         database.prepare("DELETE FROM job WHERE id = ?").bind(std::string_view(id)).run();
         if (database.changes() == 0) {
             return no_job(id);

@@ -2,6 +2,7 @@
 
 #include "server/store/sqlite/sqlite_store.h"
 
+#include "server/store/artifact_names.h"
 #include "server/store/sqlite/job_rows.h"
 #include "server/store/sqlite/schema.h"
 
@@ -184,19 +185,20 @@ Stored<void> SqliteStore::link_artifacts(
     return {};
 }
 
-void SqliteStore::unlink_artifacts(Database& database, const std::string& id, bool keep_job) {
+void SqliteStore::unlink_artifacts(Database& database, const std::string& id, Unlinked which) {
+    std::string where = " FROM job_artifact WHERE job_id = ?";
+    if (which == Unlinked::kMade) {
+        where +=
+            std::string(" AND name NOT IN ('") + kExampleArtifact + "', '" + kOriginArtifact + "')";
+    }
     {
-        Statement rows = database.prepare("SELECT digest FROM job_artifact WHERE job_id = ?");
+        Statement rows = database.prepare("SELECT digest" + where);
         rows.bind(std::string_view(id));
         while (rows.step()) {
             unlinked_digests_.push_back(rows.text(0));
         }
     }
-    if (keep_job) {
-        database.prepare("DELETE FROM job_artifact WHERE job_id = ?")
-            .bind(std::string_view(id))
-            .run();
-    }
+    database.prepare("DELETE" + where).bind(std::string_view(id)).run();
 }
 
 void SqliteStore::expire(UnixMillis now) {
@@ -215,7 +217,7 @@ void SqliteStore::expire(UnixMillis now) {
             }
         }
         for (const std::string& id : expired) {
-            unlink_artifacts(database, id, true);
+            unlink_artifacts(database, id, Unlinked::kAll);
             database.prepare("DELETE FROM checkpoint WHERE job_id = ?")
                 .bind(std::string_view(id))
                 .run();

@@ -89,7 +89,9 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
 
     void end_cancelled(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
-    void unlink_artifacts(Database& database, const std::string& id, bool keep_job);
+    // Everything, or what was made and not what the job works on.
+    enum class Unlinked : std::uint8_t { kAll, kMade };
+    void unlink_artifacts(Database& database, const std::string& id, Unlinked which);
     Stored<void> link_artifacts(
         Database& database, const std::string& id, const std::vector<ArtifactLink>& artifacts
     );

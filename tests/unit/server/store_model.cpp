@@ -116,10 +116,24 @@ Stored<std::uint64_t> StoreModel::append(
     if (row == nullptr || row->job.state != JobState::kRunning) {
         return failure(StoreErrorCode::kLeaseLost);
     }
+    const bool all_stored = std::all_of(
+        progress.artifacts.begin(),
+        progress.artifacts.end(),
+        [this](const ArtifactLink& artifact) { return stored_digests_.contains(artifact.digest); }
+    );
+    if (!all_stored) {
+        return failure(StoreErrorCode::kConflict);
+    }
     const std::uint64_t first = row->job.head + 1;
     if (row->solver_version != progress.solver_version) {
         row->checkpoint.reset();
         row->version_base = first - 1;
+        std::erase_if(row->artifacts, [](const auto& artifact) {
+            return artifact.first != "example" && artifact.first != "origin";
+        });
+    }
+    for (const ArtifactLink& artifact : progress.artifacts) {
+        row->artifacts.insert({artifact.name, artifact.digest});
     }
     for (const NewEvent& event : events) {
         append_event(*row, event);
@@ -156,7 +170,7 @@ Stored<proto::Job> StoreModel::finish(const Lease& lease, const Outcome& outcome
             kept.insert({artifact.name, artifact.digest});
         }
     }
-    if (state == JobState::kSucceeded || kept.contains("labels")) {
+    if (state == JobState::kSucceeded || kept.contains("labels") || kept.contains("preview")) {
         row->checkpoint.reset();
     }
     row->artifacts.merge(kept);

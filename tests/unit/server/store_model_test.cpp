@@ -225,6 +225,11 @@ class Comparison {
             progress.checkpoint =
                 JobCheckpoint{0, progress.blocks_done, "1", "labels" + std::to_string(below(1000))};
         }
+        for (const char* name : {"labels", "labels.1", "nodes.glb", "example"}) {
+            if (below(6) == 0) {
+                progress.artifacts.push_back({name, any_digest()});
+            }
+        }
         EXPECT_EQ(
             answer_of(server::append(store_.jobs(), lease, events, progress)),
             answer_of(model_.append(lease, events, progress))
@@ -235,7 +240,7 @@ class Comparison {
         const Lease lease = any_lease();
         Outcome outcome = below(2) == 0 ? succeeded() : failed();
         outcome.finished = now_;
-        for (const char* name : {"labels", "nodes.glb", "example"}) {
+        for (const char* name : {"labels", "nodes.glb", "example", "preview"}) {
             if (below(2) == 0) {
                 outcome.artifacts.push_back({name, any_digest()});
             }
@@ -290,7 +295,14 @@ class Comparison {
         );
         EXPECT_EQ(text_of(value(store_.jobs().checkpoint(id))), text_of(row.checkpoint));
         for (const char* name :
-             {"labels", "nodes.glb", "example", "origin", "preview0", "preview1"}) {
+             {"labels",
+              "labels.1",
+              "nodes.glb",
+              "example",
+              "origin",
+              "preview",
+              "preview0",
+              "preview1"}) {
             const auto expected = row.artifacts.find(name);
             const auto digest = store_.jobs().artifact(id, name);
             EXPECT_EQ(digest.has_value(), expected != row.artifacts.end()) << id << ' ' << name;

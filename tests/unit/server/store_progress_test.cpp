@@ -265,6 +265,72 @@ TEST_P(ProgressContract, TheCheckpointGoesWhenLabelsTellThePreview) {
     EXPECT_EQ(value(jobs().artifact("a", "labels")), sha256_hex("labels"));
 }
 
+TEST_P(ProgressContract, WhatIsLinkedWhileTheJobRunsStaysHoweverItEnds) {
+    for (const char* end : {"succeeds", "fails", "cancelled", "released"}) {
+        const Claim claimed = submit_and_claim(end);
+        auto pin = value(artifacts().put(std::string("model of ") + end));
+        const std::string digest = pin->digest();
+        Progress progress = progress_of(1);
+        progress.artifacts = {{"nodes.glb.1", digest}};
+        value(append(jobs(), claimed.lease, {block_event(0)}, progress));
+        if (std::string(end) == "cancelled") {
+            value(jobs().cancel(end, kNow));
+        }
+        if (std::string(end) == "released") {
+            value(jobs().release(claimed.lease, 0));
+        } else {
+            value(
+                jobs().finish(claimed.lease, std::string(end) == "fails" ? failed() : succeeded({}))
+            );
+        }
+        pin.reset();
+        between_steps();
+        EXPECT_EQ(value(jobs().artifact(end, "nodes.glb.1")), digest) << end;
+        EXPECT_TRUE(artifacts().load(digest)) << end;
+    }
+}
+
+TEST_P(ProgressContract, AnAppendWithWhatIsNotStoredDoesNothing) {
+    const Claim claimed = submit_and_claim("a");
+    Progress progress = progress_of(1);
+    progress.artifacts = {{"nodes.glb.1", sha256_hex("nothing")}};
+    EXPECT_EQ(
+        error_of(append(jobs(), claimed.lease, {block_event(0)}, progress)),
+        StoreErrorCode::kConflict
+    );
+    between_steps();
+    EXPECT_EQ(log("a").size(), 1U);
+    EXPECT_EQ(find("a").blocks_done, 0U);
+}
+
+TEST_P(ProgressContract, AnotherSolversModelsGoAndWhatTheJobWorksOnStays) {
+    const std::string work = sha256_hex("work");
+    {
+        const auto pin = value(artifacts().put("work"));
+        NewJob job = new_job("a");
+        job.artifacts = {{"origin", work}, {"example", work}};
+        submit(job);
+    }
+    const Claim claimed = *claim();
+    {
+        const auto pin = value(artifacts().put("model"));
+        Progress progress = progress_of(1);
+        progress.artifacts = {{"nodes.glb", pin->digest()}, {"labels.1", pin->digest()}};
+        value(append(jobs(), claimed.lease, {block_event(0)}, progress));
+    }
+    Progress progress = progress_of(1);
+    progress.solver_version = "another";
+    value(append(jobs(), claimed.lease, {block_event(1)}, progress));
+    between_steps();
+    for (const char* name : {"nodes.glb", "labels.1"}) {
+        EXPECT_EQ(error_of(jobs().artifact("a", name)), StoreErrorCode::kNotFound) << name;
+    }
+    EXPECT_EQ(error_of(artifacts().load(sha256_hex("model"))), StoreErrorCode::kNotFound);
+    for (const char* name : {"origin", "example"}) {
+        EXPECT_EQ(value(jobs().artifact("a", name)), work) << name;
+    }
+}
+
 TEST_P(ProgressContract, TheCheckpointGoesWithAnErasedJob) {
     const Claim claimed = submit_and_claim("a");
     value(append(jobs(), claimed.lease, {block_event(0)}, with_checkpoint(1, "x")));
