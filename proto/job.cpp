@@ -1,6 +1,7 @@
 #include "proto/job.h"
 
 #include "proto/json.h"
+#include "proto/limits.h"
 #include "proto/schemas.h"
 
 #include <array>
@@ -51,6 +52,12 @@ OrderedJson solver_document() {
          "(Merrell 2009, chapter 3)."},
         {"parameters", parameters},
         {"from", from_schema(parameters)},
+        {"alternatives",
+         {{"description",
+           "So many different models of one request in one job, each with a result of its own."},
+          {"type", "integer"},
+          {"minimum", 1},
+          {"maximum", RequestLimits{}.alternatives_max}}},
         {"urls", {{"self", "/v1/solvers/discrete"}}}};
 }
 
@@ -145,13 +152,51 @@ std::string to_json(const JobResult& result) {
         }
         stats["candidates"] = std::move(candidates);
     }
-    return dump(OrderedJson{
-        {"model", self + "/model.glb"},
-        {"labels", self + "/labels.json"},
-        {"bytes", result.bytes},
-        {"sha256", result.sha256},
-        {"size", OrderedJson::array({result.size.x, result.size.y, result.size.z})},
-        {"stats", std::move(stats)}});
+    OrderedJson document = OrderedJson::object();
+    std::string query;
+    if (result.place) {
+        document["alternative"] = result.place->alternative;
+        document["seed"] = result.place->seed;
+        query = "?alternative=" + std::to_string(result.place->alternative);
+    }
+    document["model"] = self + "/model.glb" + query;
+    document["labels"] = self + "/labels.json" + query;
+    document["bytes"] = result.bytes;
+    document["sha256"] = result.sha256;
+    document["size"] = OrderedJson::array({result.size.x, result.size.y, result.size.z});
+    document["stats"] = std::move(stats);
+    return dump(document);
+}
+
+std::string result_digest(const std::string& result) {
+    return OrderedJson::parse(result).at("sha256");
+}
+
+std::string to_json(const std::vector<std::string>& alternatives) {
+    OrderedJson all = OrderedJson::array();
+    for (const std::string& alternative : alternatives) {
+        all.push_back(OrderedJson::parse(alternative));
+    }
+    OrderedJson document = all.front();
+    document.erase("alternative");
+    document.erase("seed");
+    for (const char* name : {"model", "labels"}) {
+        const std::string url = document.at(name);
+        document[name] = url.substr(0, url.find('?'));
+    }
+    document["alternatives"] = std::move(all);
+    return dump(document);
+}
+
+std::uint32_t alternatives_of_request(const std::string& request) {
+    const OrderedJson json = OrderedJson::parse(request, nullptr, false);
+    return json.is_object() ? json.value("alternatives", std::uint32_t{1}) : 1;
+}
+
+std::uint32_t alternatives_of_result(const std::string& result) {
+    const OrderedJson json = OrderedJson::parse(result, nullptr, false);
+    const auto found = json.is_object() ? json.find("alternatives") : json.end();
+    return found == json.end() ? 1 : static_cast<std::uint32_t>(found->size());
 }
 
 std::string encode_tally(const SearchTally& tally) {
@@ -199,16 +244,67 @@ std::string started_fields(std::uint32_t blocks_total, bool resumed) {
     return dump(fields);
 }
 
-std::string block_fields(const BlockReport& report) {
+std::string block_fields(
+    const BlockReport& report, const std::optional<std::uint32_t>& alternative
+) {
     const std::uint32_t done = report.index + 1;
-    return dump(OrderedJson{
+    OrderedJson fields = {
         {"index", report.index},
         {"region", {{"min", triple(report.region.min)}, {"max", triple(report.region.max)}}},
         {"outcome", report.accepted ? "accepted" : "reverted"},
         {"attempts", report.attempts},
         {"blocks_done", done},
         {"blocks_total", report.blocks_total},
-        {"fraction", fraction(done, report.blocks_total)}});
+        {"fraction", fraction(done, report.blocks_total)}};
+    if (alternative) {
+        fields["alternative"] = *alternative;
+    }
+    return dump(fields);
+}
+
+std::string alternative_fields(const CandidateEnd& end) {
+    OrderedJson fields = {
+        {"alternative", end.alternative}, {"candidate", end.candidate}, {"seed", end.seed}};
+    if (!end.result.empty()) {
+        fields["result"] = OrderedJson::parse(end.result);
+    } else if (end.same) {
+        fields["same_as"] = *end.same;
+    } else {
+        fields["error"] = OrderedJson::parse(end.error);
+    }
+    return dump(fields);
+}
+
+std::optional<CandidateEnd> parse_alternative_fields(std::string_view text) {
+    const OrderedJson fields = OrderedJson::parse(text, nullptr, false);
+    const auto number = [&fields](const char* name) {
+        const auto found = fields.is_object() ? fields.find(name) : fields.end();
+        return found != fields.end() && found->is_number_unsigned()
+                   ? std::optional(found->get<std::uint64_t>())
+                   : std::nullopt;
+    };
+    const auto embedded = [&fields](const char* name) {
+        const auto found = fields.find(name);
+        return found != fields.end() && found->is_object() ? dump(*found) : std::string();
+    };
+    const auto alternative = number("alternative");
+    const auto candidate = number("candidate");
+    const auto seed = number("seed");
+    if (!alternative || !candidate || !seed) {
+        return std::nullopt;
+    }
+    CandidateEnd end;
+    end.alternative = static_cast<std::uint32_t>(*alternative);
+    end.candidate = static_cast<std::uint32_t>(*candidate);
+    end.seed = *seed;
+    end.result = embedded("result");
+    if (const auto same = number("same_as")) {
+        end.same = static_cast<std::uint32_t>(*same);
+    }
+    end.error = embedded("error");
+    const int ways =
+        (end.result.empty() ? 0 : 1) + (end.same ? 1 : 0) + (end.error.empty() ? 0 : 1);
+    return ways == 1 ? std::optional(std::move(end)) : std::nullopt;
 }
 
 std::string succeeded_fields(const std::string& result_json) {

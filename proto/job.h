@@ -46,15 +46,35 @@ struct Job {
 
 // What a finished model is, for `result`.
 struct JobResult {
+    // Which of several, and its seed.
+    struct Place {
+        std::uint32_t alternative = 0;
+        std::uint64_t seed = 0;
+    };
+
     std::string job_id;
     std::uint64_t bytes = 0;
     std::string sha256;
     SynthesisStats stats;
     double solve_seconds = 0;
     GridSize size;
+    std::optional<Place> place = std::nullopt;  // nothing: the job has this one alone
 };
 
 [[nodiscard]] std::string to_json(const JobResult& result);
+
+// The SHA-256 that a result tells, as hex.
+// Requires: a JSON text as above.
+[[nodiscard]] std::string result_digest(const std::string& result);
+
+// `result` of a job with alternatives: the first one's, and the list of all.
+// Requires: JSON texts as above, at least one, each with its place.
+[[nodiscard]] std::string to_json(const std::vector<std::string>& alternatives);
+
+// How many models a job was asked for and has, by its request and its result (JSON texts, may be
+// empty): 1 unless it was asked for alternatives.
+[[nodiscard]] std::uint32_t alternatives_of_request(const std::string& request);
+[[nodiscard]] std::uint32_t alternatives_of_result(const std::string& result);
 
 // A tally as text, for checkpoints, and back; nothing when the text is none.
 [[nodiscard]] std::string encode_tally(const SearchTally& tally);
@@ -64,7 +84,24 @@ struct JobResult {
 
 [[nodiscard]] std::string queued_fields(std::uint64_t position);
 [[nodiscard]] std::string started_fields(std::uint32_t blocks_total, bool resumed);
-[[nodiscard]] std::string block_fields(const BlockReport& report);
+// `alternative`: of which of several models.
+[[nodiscard]] std::string block_fields(
+    const BlockReport& report, const std::optional<std::uint32_t>& alternative = std::nullopt
+);
+
+// What became of a candidate of a job with alternatives.
+struct CandidateEnd {
+    std::uint32_t candidate = 0;    // from 0
+    std::uint32_t alternative = 0;  // the one that it was to be
+    std::uint64_t seed = 0;
+    std::string result;                 // JSON text of the new model; empty: it is none
+    std::optional<std::uint32_t> same;  // the earlier alternative that it is equal to
+    std::string error;                  // JSON text of a problem: there is no model
+};
+
+[[nodiscard]] std::string alternative_fields(const CandidateEnd& end);
+// Nothing when the text is none.
+[[nodiscard]] std::optional<CandidateEnd> parse_alternative_fields(std::string_view text);
 [[nodiscard]] std::string succeeded_fields(const std::string& result_json);
 [[nodiscard]] std::string failed_fields(const std::string& problem_json);
 [[nodiscard]] std::string snapshot_fields(const std::string& job_json);

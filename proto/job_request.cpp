@@ -43,24 +43,47 @@ bool only_too_large(const std::vector<Fault>& faults) {
 void check_against_limits(
     const Example& example,
     const Parameters& parameters,
+    std::uint32_t models,
     const RequestLimits& limits,
     Faults& faults
 ) {
     faults.add_all("/parameters", find_faults(example, parameters));
     const auto& discrete = std::get<discrete::Parameters>(parameters);
-    if (discrete.size->cell_count() > limits.model_cells_max) {
+    const std::size_t cells = discrete.size->cell_count();
+    if (cells > limits.model_cells_max) {
         faults.add(
             "/parameters/size",
             "the default size passes the limit model_cells_max, " +
                 std::to_string(limits.model_cells_max),
             true
         );
-    } else if (*discrete.blocks && !schedule_blocks(*discrete.size, (*discrete.blocks)->layout,
-                                                    limits.blocks_max)) {
+        return;
+    }
+    if (models * cells > limits.model_cells_max) {
+        faults.add(
+            "/alternatives",
+            "so many models of " + std::to_string(cells) +
+                " cells pass the limit model_cells_max, " + std::to_string(limits.model_cells_max),
+            true
+        );
+    }
+    if (!*discrete.blocks) {
+        return;
+    }
+    const auto schedule =
+        schedule_blocks(*discrete.size, (*discrete.blocks)->layout, limits.blocks_max);
+    if (!schedule) {
         faults.add(
             "/parameters/blocks",
             "the schedule would have more blocks than the limit blocks_max, " +
                 std::to_string(limits.blocks_max),
+            true
+        );
+    } else if (models * schedule->size() > limits.blocks_max) {
+        faults.add(
+            "/alternatives",
+            "so many models of " + std::to_string(schedule->size()) +
+                " blocks pass the limit blocks_max, " + std::to_string(limits.blocks_max),
             true
         );
     }
@@ -131,10 +154,15 @@ class RequestReader {
         if (!find_origin_ || request_.from->job_id.empty()) {
             return;
         }
-        auto earlier = find_origin_(request_.from->job_id);
+        auto earlier = find_origin_(request_.from->job_id, request_.from->alternative);
         if (earlier) {
             earlier_ = std::move(*earlier);
             take_origin_size();
+        } else if (earlier.error().status == 404 && request_.from->alternative > 0) {
+            faults_.add(
+                "/from/alternative",
+                "there is no job \"" + request_.from->job_id + "\" with such an alternative"
+            );
         } else if (earlier.error().status == 404) {
             faults_.add("/from/job", "there is no job \"" + request_.from->job_id + "\"");
         } else {
@@ -264,6 +292,11 @@ class RequestReader {
     }
 
     void read_the_rest() {
+        if (const auto alternatives = fields_.optional("alternatives")) {
+            request_.alternatives = static_cast<std::uint32_t>(
+                alternatives->integer(1, limits_.alternatives_max).value_or(1)
+            );
+        }
         if (const auto priority = fields_.optional("priority")) {
             request_.priority = static_cast<std::int32_t>(priority->integer(-10, 10).value_or(0));
         }
@@ -282,7 +315,9 @@ class RequestReader {
         }
         request_.task.example = *example_;
         request_.task.parameters = with_defaults(parameters_, *example_);
-        check_against_limits(*example_, request_.task.parameters, limits_, faults_);
+        check_against_limits(
+            *example_, request_.task.parameters, request_.alternatives.value_or(1), limits_, faults_
+        );
         if (request_.from && request_.from->origin.size != GridSize{}) {
             faults_.add_all(
                 "", find_origin_faults(*request_.from, model_size(request_.task.parameters))
@@ -300,6 +335,9 @@ class RequestReader {
         }
         echo["parameters"] =
             write_parameters(std::get<discrete::Parameters>(request_.task.parameters));
+        if (request_.alternatives) {
+            echo["alternatives"] = *request_.alternatives;
+        }
         echo["priority"] = request_.priority;
         if (request_.deadline_seconds) {
             echo["deadline"] = *request_.deadline_seconds;

@@ -15,6 +15,7 @@ namespace modelsynth::proto {
 // The finished job that another one starts from.
 struct JobOrigin {
     std::string job_id;
+    std::uint32_t alternative = 0;  // which of its models
     // Without its labels: they are not on the wire; whoever runs the job puts them there.
     discrete::Origin origin = {};
 };
@@ -27,6 +28,7 @@ struct JobRequest {
     std::optional<JobOrigin> from;
     std::int32_t priority = 0;
     std::optional<double> deadline_seconds;
+    std::optional<std::uint32_t> alternatives;  // so many different models, as a list
     // The request as JSON text with seed and defaults filled in: sent again it gives the same
     // model. This is what a job keeps and shows.
     std::string echo;
@@ -37,8 +39,10 @@ using FindExample = std::function<std::optional<Example>(const std::string& id)>
 
 // The request of a finished job, for one that starts from it: solver, example and parameters are
 // taken from there, field by field, unless they are given. Fails: not-found when there is no such
-// job, which is a fault of the request; else with the problem that the request is answered with.
-using FindOrigin = std::function<Parsed<JobRequest>(const std::string& job_id)>;
+// job or it has no such model, which is a fault of the request; else with the problem that the
+// request is answered with.
+using FindOrigin =
+    std::function<Parsed<JobRequest>(const std::string& job_id, std::uint32_t alternative)>;
 
 // Reads and checks a request. `seed_if_absent` is used when it names none. Without `find_origin`
 // it is an echo, which tells all that it needs of the job that it starts from.

@@ -36,6 +36,7 @@ struct RequestLimits {
     std::int32_t resemblance_window_max = 3;  // cells; its cost goes with the cube
     std::size_t terms_max = 16;               // of one objective
     std::int32_t best_of_max = 64;            // models made for one result
+    std::int32_t alternatives_max = 64;       // models of one job, all within model_cells_max
     MaskLimits mask;
     std::size_t voxels_max = 1'000'000;  // values of one constraint
     std::int32_t separation_max = 64;    // steps; its cost goes with the cube

@@ -47,6 +47,11 @@ JobOrigin read_origin(const Value& value, const RequestLimits& limits, bool name
             job->fault("must not be empty");
         }
     }
+    if (const auto alternative = reader.optional("alternative")) {
+        from.alternative = static_cast<std::uint32_t>(
+            alternative->integer(0, limits.alternatives_max - 1).value_or(0)
+        );
+    }
     if (const auto size = names_all ? reader.required("size") : reader.optional("size")) {
         from.origin.size = size_of(size->cell(1, limits.extent_max).value_or(Cell{}));
     }
@@ -59,10 +64,12 @@ JobOrigin read_origin(const Value& value, const RequestLimits& limits, bool name
 }
 
 OrderedJson write_origin(const JobOrigin& from) {
-    OrderedJson written = {
-        {"job", from.job_id},
-        {"size", write_size(from.origin.size)},
-        {"at", write_cell(from.origin.at)}};
+    OrderedJson written = {{"job", from.job_id}};
+    if (from.alternative > 0) {
+        written["alternative"] = from.alternative;
+    }
+    written["size"] = write_size(from.origin.size);
+    written["at"] = write_cell(from.origin.at);
     write_region(from.origin.remade, written);
     return written;
 }

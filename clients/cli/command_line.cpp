@@ -138,6 +138,10 @@ CLI::Option* add_request(CLI::App& command, RequestOptions& request) {
         ->needs(from);
     add("--size", request.size, "Cells along x, y (up) and z")->type_name("40x10x40");
     add("--seed", request.seed, "Same seed, same model")->check(CLI::NonNegativeNumber);
+    add("--alternatives",
+        request.alternatives,
+        "So many different models; their files are FILE.glb, FILE-1.glb, ...")
+        ->type_name("N");
     add("--parameters", request.parameters, "The solver's parameters; --size is put with them")
         ->type_name("JSON|FILE");
     add("--priority", request.priority, "-10 ... 10, higher first");
@@ -179,6 +183,10 @@ void add_job_commands(CLI::App& app, Options& options) {
     CLI::Option* const profile = add_profile(fetch, options.fetch.profile);
     CLI::Option* const preview =
         fetch.add_flag("--preview", options.fetch.is_preview, "The model as far as it is now");
+    fetch.add_option("--alternative", options.fetch.alternative, "Which of several models, from 0")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("K")
+        ->excludes(preview);
     fetch.add_flag("--labels", options.fetch.is_labels, "The labels as JSON instead")
         ->excludes(profile)
         ->excludes(preview);

@@ -53,8 +53,9 @@ Outcome<void> outcome_of(const JobEnd& end, const std::string& job_id) {
     return tl::unexpected(std::move(failure));
 }
 
-// Shows a job until it ends. `prints_events`: each as a line of JSON on standard output.
-Outcome<void> watch(
+// Shows a job until it ends; how many models it made. `prints_events`: each as a line of JSON on
+// standard output.
+Outcome<std::uint32_t> watch(
     const HttpClient& client,
     const FollowOptions& options,
     bool prints_events,
@@ -71,17 +72,25 @@ Outcome<void> watch(
         end.error().message = "interrupted; the job " + options.job_id + " goes on";
     }
     return end.and_then([&options](const JobEnd& ended) {
-        return outcome_of(ended, options.job_id);
+        return outcome_of(ended, options.job_id).map([&ended] { return ended.models; });
     });
 }
 
 std::string artifact_target(const FetchOptions& options) {
     const std::string job = "/v1/jobs/" + percent_encode(options.job_id);
-    if (options.is_labels) {
-        return job + "/labels.json";
+    std::string query;
+    const auto add = [&query](const char* name, const std::string& value) {
+        query += (query.empty() ? "?" : "&") + (name + ("=" + percent_encode(value)));
+    };
+    if (options.alternative) {
+        add("alternative", std::to_string(*options.alternative));
     }
-    const std::string query =
-        options.profile.empty() ? "" : "?profile=" + percent_encode(options.profile);
+    if (options.is_labels) {
+        return job + "/labels.json" + query;
+    }
+    if (!options.profile.empty()) {
+        add("profile", options.profile);
+    }
     return job + (options.is_preview ? "/preview.glb" : "/model.glb") + query;
 }
 
@@ -117,13 +126,19 @@ Outcome<RunReport> finish_job(
     if (!watched) {
         return tl::unexpected(std::move(watched.error()));
     }
-    RunReport report{job.id, wanted.output, 0, job.seed, display.progress(), {}};
-    if (!wanted.output.empty()) {
-        auto bytes = download(client, wanted);
+    RunReport report{job.id, {}, job.seed, display.progress(), {}};
+    const std::uint32_t files = wanted.output.empty() ? 0 : wanted.output == "-" ? 1 : *watched;
+    for (std::uint32_t i = 0; i < files; ++i) {
+        FetchOptions one = wanted;
+        one.output = numbered_file(wanted.output, i);
+        if (i > 0) {
+            one.alternative = i;
+        }
+        auto bytes = download(client, one);
         if (!bytes) {
             return tl::unexpected(std::move(bytes.error()));
         }
-        report.bytes = *bytes;
+        report.files.push_back({one.output, *bytes});
     }
     report.elapsed = display.elapsed();
     return report;
@@ -169,7 +184,7 @@ Outcome<void> submit(const HttpClient& client, const SubmitOptions& options, boo
 
 Outcome<void> follow(const HttpClient& client, const FollowOptions& options, bool as_json) {
     ProgressDisplay display(choose_style(as_json));
-    return watch(client, options, as_json, display).map([&] {
+    return watch(client, options, as_json, display).map([&](std::uint32_t /*models*/) {
         if (!as_json) {
             note_success(options.job_id, display.progress());
         }

@@ -5,6 +5,7 @@
 #include "clients/cli/run_options.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace modelsynth::cli {
@@ -28,6 +29,7 @@ struct FetchOptions {
     std::string profile;
     bool is_preview = false;
     bool is_labels = false;
+    std::optional<std::uint64_t> alternative = {};
 };
 
 // The commands about one job and its model. They print what they were asked for on standard

@@ -34,6 +34,15 @@ std::string embedded(const Json& object, const char* name) {
     return value.is_object() ? dump(value) : "";
 }
 
+// How many models a result tells of; 0: there is none.
+std::uint32_t model_count(const Json& result) {
+    const Json& alternatives = field(result, "alternatives");
+    if (alternatives.is_array() && !alternatives.empty()) {
+        return static_cast<std::uint32_t>(alternatives.size());
+    }
+    return result.is_object() ? 1 : 0;
+}
+
 }  // namespace
 
 std::optional<JobEvent> parse_job_event(std::string_view text) {
@@ -53,6 +62,7 @@ std::optional<JobEvent> parse_job_event(std::string_view text) {
     const Json& stats = field(field(json, "result"), "stats");
     event.accepted = count_field(stats, "blocks_accepted");
     event.reverted = count_field(stats, "blocks_reverted");
+    event.models = event.type == "succeeded" ? model_count(field(json, "result")) : 0;
     event.error = embedded(json, "error");
     event.text = dump(json);
     return event;
@@ -64,14 +74,14 @@ std::optional<JobEnd> end_of_job(std::string_view job_json) {
     if (state != "succeeded" && state != "failed" && state != "cancelled") {
         return std::nullopt;
     }
-    return JobEnd{state, embedded(job, "error")};
+    return JobEnd{state, embedded(job, "error"), model_count(field(job, "result"))};
 }
 
 std::optional<JobEnd> end_of_event(const JobEvent& event) {
     if (event.type != "succeeded" && event.type != "failed" && event.type != "cancelled") {
         return std::nullopt;
     }
-    return JobEnd{event.type, event.error};
+    return JobEnd{event.type, event.error, event.models};
 }
 
 }  // namespace modelsynth::cli

@@ -17,8 +17,9 @@ struct JobEvent {
     std::uint64_t position = 0;      // of queued
     std::uint64_t accepted = 0;      // of succeeded: blocks, as the result counts them
     std::uint64_t reverted = 0;
-    std::string error;  // of failed: the problem document
-    std::string text;   // the event as it came, on one line
+    std::uint32_t models = 0;  // of succeeded: alternatives, or the one model
+    std::string error;         // of failed: the problem document
+    std::string text;          // the event as it came, on one line
 };
 
 // The event of a `data:` text; nothing when it is none.
@@ -26,8 +27,9 @@ struct JobEvent {
 
 // How a job ended.
 struct JobEnd {
-    std::string state;  // succeeded, failed, cancelled
-    std::string error;  // the problem document of a failed job
+    std::string state;         // succeeded, failed, cancelled
+    std::string error;         // the problem document of a failed job
+    std::uint32_t models = 0;  // of a job that succeeded
 };
 
 // The end of a job that the resource /v1/jobs/{id} shows; nothing while it is unfinished.

@@ -103,4 +103,16 @@ void OutputFile::note_error() {
     }
 }
 
+std::string numbered_file(const std::string& path, std::uint32_t number) {
+    if (number == 0) {
+        return path;
+    }
+    const std::size_t slash = path.rfind('/');
+    const std::size_t first = slash == std::string::npos ? 0 : slash + 1;
+    const std::size_t dot = path.rfind('.');
+    const bool has_extension = dot != std::string::npos && dot > first;
+    const std::size_t end = has_extension ? dot : path.size();
+    return path.substr(0, end) + "-" + std::to_string(number) + path.substr(end);
+}
+
 }  // namespace modelsynth::cli

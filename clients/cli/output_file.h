@@ -44,4 +44,7 @@ class OutputFile {
     std::string error_;
 };
 
+// The file for one of several models: castle.glb for the first, castle-1.glb for the next.
+[[nodiscard]] std::string numbered_file(const std::string& path, std::uint32_t number);
+
 }  // namespace modelsynth::cli

@@ -145,6 +145,9 @@ Outcome<std::string> make_request_body(const RequestOptions& options) {
     if (options.seed) {
         add("seed", std::to_string(*options.seed));
     }
+    if (options.alternatives) {
+        add("alternatives", std::to_string(*options.alternatives));
+    }
     if (!options.parameters.empty() || !options.size.empty()) {
         const auto parameters = parameters_text(options);
         if (!parameters) {

@@ -21,6 +21,7 @@ struct RequestOptions {
     std::string at;            // where the job's model lies in the new one: 10,0,10
     std::string size;          // 40x10x40
     std::optional<std::uint64_t> seed;
+    std::optional<std::int64_t> alternatives;
     std::string parameters;  // an object as text, or a file of it
     std::optional<std::int64_t> priority;
     std::optional<double> deadline_seconds;

@@ -11,6 +11,7 @@
 #include "proto/problem.h"
 #include "solver/examples/built_in.h"
 #include "solver/mesh/glb_writer.h"
+#include "solver/registry/alternatives.h"
 #include "solver/registry/task.h"
 
 #include <algorithm>
@@ -41,7 +42,9 @@ std::optional<Example> find_built_in(const std::string& id) {
 }
 
 // Jobs are on servers.
-proto::Parsed<proto::JobRequest> find_no_job(const std::string& /*id*/) {
+proto::Parsed<proto::JobRequest> find_no_job(
+    const std::string& /*id*/, std::uint32_t /*alternative*/
+) {
     return tl::unexpected(proto::make_problem("not-found", "there are no jobs here"));
 }
 
@@ -103,49 +106,103 @@ class Watchdog {
     std::jthread thread_;  // last, since it uses the others
 };
 
-Outcome<Finished> solve(const proto::JobRequest& request, ProgressDisplay& display) {
-    ShowProgress observer(display);
-    const Watchdog watchdog(request.deadline_seconds);
-    Preparations preparations;
-    auto finished =
-        run(request.task,
-            preparations,
-            observer,
-            watchdog.token(),
-            nullptr,
-            std::max(1U, std::thread::hardware_concurrency()));
-    display.finish();
-    if (is_interrupted()) {
-        return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});
-    }
-    if (finished) {
-        return std::move(*finished);
-    }
-    const bool is_late =
-        finished.error().code == ErrorCode::kCancelled && watchdog.is_past_deadline();
-    return tl::unexpected(failure_of(
-        is_late ? proto::make_problem("deadline-exceeded", "the deadline passed while solving")
-                : proto::problem_of(finished.error())
-    ));
-}
+// Makes the models that a request asks for and writes each when it is there.
+class LocalRun {
+  public:
+    LocalRun(const RunOptions& options, const proto::JobRequest& request, ProgressDisplay& display)
+        : options_(options),
+          request_(request),
+          display_(display),
+          watchdog_(request.deadline_seconds) {}
 
-// The bytes written.
-Outcome<std::uint64_t> write_model(
-    const RunOptions& options, const Example& example, const Model& model
-) {
-    GlbOptions glb_options;
-    glb_options.profile = profile_of(options.profile);
-    const auto glb = write_glb(make_scene(example, model, Box::whole(model.size)), glb_options);
-    if (!glb) {
-        return tl::unexpected(failure_of(proto::problem_of(glb.error())));
+    Outcome<std::vector<RunReport::File>> run() {
+        Alternatives series(request_.task.seed, request_.alternatives.value_or(1));
+        std::vector<RunReport::File> files;
+        while (!series.is_complete()) {
+            auto made = make(series.next_seed());
+            if (is_interrupted()) {
+                return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});
+            }
+            if (!made) {
+                const ErrorCode code = made.error().code;
+                const bool goes_on = series.add_failure(code) && request_.alternatives;
+                if (!goes_on && (files.empty() || code != ErrorCode::kGaveUp)) {
+                    return tl::unexpected(failure_of(problem_of(made.error())));
+                }
+                continue;
+            }
+            if (series.add(std::move(made->identity))) {
+                continue;  // as an earlier one
+            }
+            auto file = write(made->glb, static_cast<std::uint32_t>(files.size()));
+            if (!file) {
+                return tl::unexpected(std::move(file.error()));
+            }
+            files.push_back(std::move(*file));
+        }
+        return files;
     }
-    OutputFile file(options.output);
-    static_cast<void>(file.write(*glb));  // commit() tells whether it went well
-    if (is_interrupted()) {
-        return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});
+
+  private:
+    struct Made {
+        std::string glb;
+        std::string identity;  // by which models are equal: the file in the default profile
+    };
+
+    Result<Made> make(std::uint64_t seed) {
+        ShowProgress observer(display_);
+        Task task = request_.task;
+        task.seed = seed;
+        return modelsynth::run(
+                   task,
+                   preparations_,
+                   observer,
+                   watchdog_.token(),
+                   nullptr,
+                   std::max(1U, std::thread::hardware_concurrency())
+        )
+            .and_then([this](const Finished& finished) { return draw(finished.model); });
     }
-    return file.commit().map([&file] { return file.bytes_written(); });
-}
+
+    [[nodiscard]] Result<Made> draw(const Model& model) const {
+        const Scene scene = make_scene(request_.task.example, model, Box::whole(model.size));
+        GlbOptions wanted;
+        wanted.profile = profile_of(options_.profile);
+        return write_glb(scene, wanted).and_then([&](std::string glb) -> Result<Made> {
+            if (!request_.alternatives || wanted.profile == GlbProfile::kNodes) {
+                std::string identity = request_.alternatives ? glb : "";
+                return Made{std::move(glb), std::move(identity)};
+            }
+            return write_glb(scene).map([&glb](std::string identity) {
+                return Made{std::move(glb), std::move(identity)};
+            });
+        });
+    }
+
+    [[nodiscard]] proto::Problem problem_of(const Error& error) const {
+        const bool is_late = error.code == ErrorCode::kCancelled && watchdog_.is_past_deadline();
+        return is_late
+                   ? proto::make_problem("deadline-exceeded", "the deadline passed while solving")
+                   : proto::problem_of(error);
+    }
+
+    Outcome<RunReport::File> write(const std::string& glb, std::uint32_t number) {
+        display_.finish();
+        const std::string name = numbered_file(options_.output, number);
+        OutputFile file(name);
+        static_cast<void>(file.write(glb));  // commit() tells whether it went well
+        if (is_interrupted()) {
+            return tl::unexpected(Failure{ExitCode::kInterrupted, "interrupted"});
+        }
+        return file.commit().map([&] { return RunReport::File{name, file.bytes_written()}; });
+    }
+
+    const RunOptions& options_;
+    const proto::JobRequest& request_;
+    ProgressDisplay& display_;
+    Watchdog watchdog_;
+    Preparations preparations_;
+};
 
 }  // namespace
 
@@ -162,23 +219,16 @@ Outcome<void> run_local(const RunOptions& options, bool as_json) {
     if (!request) {
         return tl::unexpected(failure_of(request.error()));
     }
-    ProgressDisplay display(choose_style(as_json));
-    const auto finished = solve(*request, display);
-    if (!finished) {
-        return tl::unexpected(finished.error());
+    if (options.output == "-" && request->alternatives.value_or(1) > 1) {
+        return wrong_usage("several models do not go to standard output");
     }
-    return write_model(options, request->task.example, finished->model)
-        .map([&](std::uint64_t bytes) {
-            print_report(
-                {"",
-                 options.output,
-                 bytes,
-                 request->task.seed,
-                 display.progress(),
-                 display.elapsed()},
-                as_json
-            );
-        });
+    ProgressDisplay display(choose_style(as_json));
+    return LocalRun(options, *request, display).run().map([&](std::vector<RunReport::File> files) {
+        print_report(
+            {"", std::move(files), request->task.seed, display.progress(), display.elapsed()},
+            as_json
+        );
+    });
 }
 
 }  // namespace modelsynth::cli

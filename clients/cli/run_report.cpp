@@ -13,13 +13,21 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string report_json(const RunReport& report) {
-    const Json json = {
+    const RunReport::File& first = report.files.front();
+    Json json = {
         {"job", report.job_id.empty() ? Json() : Json(report.job_id)},
-        {"file", report.file},
-        {"bytes", report.bytes},
+        {"file", first.name},
+        {"bytes", first.bytes},
         {"seed", report.seed},
         {"blocks_accepted", report.progress.accepted},
         {"blocks_reverted", report.progress.reverted}};
+    if (report.files.size() > 1) {
+        Json files = Json::array();
+        for (const RunReport::File& file : report.files) {
+            files.push_back({{"file", file.name}, {"bytes", file.bytes}});
+        }
+        json["alternatives"] = std::move(files);
+    }
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -30,11 +38,14 @@ void print_report(const RunReport& report, bool as_json) {
         print_line(report_json(report));
         return;
     }
-    const std::string file = report.file == "-" ? "standard output" : report.file;
-    const std::string line = file + ": " + std::to_string(report.bytes) + " bytes, " +
-                             describe_blocks(report.progress) + ", seed " +
-                             std::to_string(report.seed) + ", " + describe_time(report.elapsed);
-    std::fprintf(stderr, "%s\n", printable(line).c_str());
+    const std::string summary = ", " + describe_blocks(report.progress) + ", seed " +
+                                std::to_string(report.seed) + ", " + describe_time(report.elapsed);
+    for (const RunReport::File& file : report.files) {
+        const std::string line = (file.name == "-" ? "standard output" : file.name) + ": " +
+                                 std::to_string(file.bytes) + " bytes" +
+                                 (&file == &report.files.back() ? summary : "");
+        std::fprintf(stderr, "%s\n", printable(line).c_str());
+    }
 }
 
 void print_line(const std::string& line) {

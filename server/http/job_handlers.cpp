@@ -1,4 +1,5 @@
 #include "proto/job.h"
+#include "proto/limits.h"
 #include "server/http/handlers.h"
 #include "server/http/representation.h"
 #include "server/http/request_fields.h"
@@ -92,8 +93,27 @@ Response delete_job(const Call& call) {
     return {204, {}, std::string()};
 }
 
+namespace {
+
+// Which of several models; nothing: the first, once the job has succeeded.
+proto::Parsed<std::optional<std::uint32_t>> wanted_alternative(const Call& call) {
+    if (!call.request.query_field("alternative")) {
+        return std::nullopt;
+    }
+    const auto max = static_cast<std::uint64_t>(proto::RequestLimits{}.alternatives_max) - 1;
+    return query_number(call.request, "alternative", 0, 0, max).map([](std::uint64_t number) {
+        return std::optional(static_cast<std::uint32_t>(number));
+    });
+}
+
+std::string file_stem(const Call& call, const std::optional<std::uint32_t>& alternative) {
+    return alternative ? call.id + "-" + std::to_string(*alternative) : call.id;
+}
+
+}  // namespace
+
 Response get_model(const Call& call) {
-    if (auto problem = check_query(call.request, {"profile", "compression"})) {
+    if (auto problem = check_query(call.request, {"profile", "compression", "alternative"})) {
         return refuse(call, *problem);
     }
     static constexpr std::array<std::pair<std::string_view, GlbProfile>, 3> kProfiles = {
@@ -114,7 +134,11 @@ Response get_model(const Call& call) {
             call, make_problem("invalid-request", "\"compression\" must be none in this version")
         );
     }
-    const auto digest = call.service.model_digest(call.id, profile->second);
+    const auto alternative = wanted_alternative(call);
+    if (!alternative) {
+        return refuse(call, alternative.error());
+    }
+    const auto digest = call.service.model_digest(call.id, profile->second, *alternative);
     if (!digest) {
         return refuse(call, digest.error());
     }
@@ -125,7 +149,7 @@ Response get_model(const Call& call) {
     Representation representation;
     representation.media_type = "model/gltf-binary";
     representation.etag = "\"" + *digest + "\"";
-    representation.file_name = call.id + ".glb";
+    representation.file_name = file_stem(call, *alternative) + ".glb";
     representation.content = std::shared_ptr<ArtifactStore::Reader>(std::move(*reader));
     return respond_with(call.request, std::move(representation));
 }
@@ -139,7 +163,14 @@ Response get_preview(const Call& call) {
 }
 
 Response get_labels(const Call& call) {
-    auto labels = call.service.labels_json(call.id);
+    if (auto problem = check_query(call.request, {"alternative"})) {
+        return refuse(call, *problem);
+    }
+    const auto alternative = wanted_alternative(call);
+    if (!alternative) {
+        return refuse(call, alternative.error());
+    }
+    auto labels = call.service.labels_json(call.id, *alternative);
     if (!labels) {
         return refuse(call, labels.error());
     }

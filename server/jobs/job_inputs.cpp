@@ -8,9 +8,12 @@
 namespace modelsynth::server {
 
 Stored<void> InheritedInputs::take(
-    JobStore& jobs, ArtifactStore& artifacts, const std::string& earlier_id
+    JobStore& jobs,
+    ArtifactStore& artifacts,
+    const std::string& earlier_id,
+    std::uint32_t alternative
 ) {
-    const auto hold = [&](const char* artifact, const char* name) {
+    const auto hold = [&](const std::string& artifact, const char* name) {
         return jobs.artifact(earlier_id, artifact).and_then([&](const std::string& digest) {
             return artifacts.pin(digest).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
                 links_.push_back({name, digest});
@@ -18,7 +21,7 @@ Stored<void> InheritedInputs::take(
             });
         });
     };
-    if (auto held = hold("labels", kOriginArtifact); !held) {
+    if (auto held = hold(labels_artifact(alternative), kOriginArtifact); !held) {
         return held;
     }
     auto held = hold(kExampleArtifact, kExampleArtifact);

@@ -2,10 +2,12 @@
 
 #include "proto/problem.h"
 #include "server/jobs/example_library.h"
+#include "server/store/artifact_names.h"
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
 #include "solver/discrete/origin.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,17 +17,15 @@ namespace modelsynth::server {
 
 // What a job works on besides its request. It stays linked to the job, whoever gave it may go.
 
-// The text of an uploaded example.
-inline constexpr const char* kExampleArtifact = "example";
-// The labels of the model that the job starts from.
-inline constexpr const char* kOriginArtifact = "origin";
-
 // What a new job takes over from the one that it starts from, held until it is linked to it.
 class InheritedInputs {
   public:
-    // Fails: kNotFound when there is no such job or it has no model.
+    // Fails: kNotFound when there is no such job or it has no such model.
     [[nodiscard]] Stored<void> take(
-        JobStore& jobs, ArtifactStore& artifacts, const std::string& earlier_id
+        JobStore& jobs,
+        ArtifactStore& artifacts,
+        const std::string& earlier_id,
+        std::uint32_t alternative
     );
 
     // The links of a job with that example; an earlier job's other example is none of its.

@@ -3,6 +3,7 @@
 #include "proto/frame.h"
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
+#include "server/store/artifact_names.h"
 
 #include <algorithm>
 #include <chrono>
@@ -29,16 +30,16 @@ Parsed<T> parsed(Stored<T> stored) {
     }
 }
 
-const char* artifact_name(GlbProfile profile) {
+const char* profile_name(GlbProfile profile) {
     switch (profile) {
         case GlbProfile::kNodes:
-            return "nodes.glb";
+            return "nodes";
         case GlbProfile::kInstanced:
-            return "instanced.glb";
+            return "instanced";
         case GlbProfile::kMerged:
-            return "merged.glb";
+            return "merged";
     }
-    return "nodes.glb";
+    return "nodes";
 }
 
 bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
@@ -139,7 +140,9 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
             auto entry = examples_.find(id);
             return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
-        [this, &inputs](const std::string& id) { return find_origin(id, inputs); },
+        [this, &inputs](const std::string& id, std::uint32_t alternative) {
+            return find_origin(id, alternative, inputs);
+        },
         make_seed()
     );
     if (!request) {
@@ -217,30 +220,58 @@ Parsed<Job> JobService::find_finished(const std::string& id) {
     return job;
 }
 
-Parsed<proto::JobRequest> JobService::find_origin(const std::string& id, InheritedInputs& inputs) {
+Parsed<Job> JobService::find_with_model(
+    const std::string& id, const std::optional<std::uint32_t>& alternative
+) {
+    if (!alternative) {
+        return find_finished(id);
+    }
+    auto job = find(id);
+    if (!job || has_expired(*job) || jobs_.artifact(id, labels_artifact(*alternative))) {
+        return job && has_expired(*job) ? find_finished(id) : job;
+    }
+    const std::uint32_t wanted = proto::alternatives_of_request(job->request);
+    if (*alternative < wanted && job->state != JobState::kSucceeded) {
+        return find_finished(id);  // tells why it is not there
+    }
+    return tl::unexpected(
+        make_problem("not-found", "the job has no alternative " + std::to_string(*alternative))
+    );
+}
+
+Parsed<proto::JobRequest> JobService::find_origin(
+    const std::string& id, std::uint32_t alternative, InheritedInputs& inputs
+) {
     const auto job = find_finished(id);
     if (!job) {
         return tl::unexpected(job.error());
     }
-    const auto taken = inputs.take(jobs_, artifacts_, id);
+    const auto taken = inputs.take(jobs_, artifacts_, id, alternative);
     return taken ? read_request(*job) : tl::unexpected(problem_of(taken.error()));
 }
 
-Stored<std::string> JobService::load_labels(const std::string& id) {
-    const auto digest = jobs_.artifact(id, "labels");
-    if (digest) {
-        return artifacts_.load(*digest);
-    }
-    auto checkpoint = jobs_.checkpoint(id);
-    if (checkpoint && *checkpoint) {
-        return std::move((*checkpoint)->labels);
-    }
-    return tl::unexpected(checkpoint ? digest.error() : checkpoint.error());
+Stored<std::string> JobService::load_artifact(const std::string& id, const std::string& name) {
+    return jobs_.artifact(id, name).and_then([this](const std::string& digest) {
+        return artifacts_.load(digest);
+    });
 }
 
-Parsed<JobService::LoadedModel> JobService::load_model(const Job& job) {
-    const auto labels = load_labels(job.id);
-    return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
+Stored<std::string> JobService::load_newest_labels(const Job& job) {
+    if (job.state != JobState::kSucceeded) {
+        auto preview = load_artifact(job.id, kPreviewArtifact);
+        if (preview || preview.error().code != StoreErrorCode::kNotFound) {
+            return preview;
+        }
+        auto checkpoint = jobs_.checkpoint(job.id);
+        if (!checkpoint) {
+            return tl::unexpected(std::move(checkpoint.error()));
+        }
+        if (*checkpoint) {
+            return std::move((*checkpoint)->labels);
+        }
+    }
+    const std::uint32_t made = proto::alternatives_of_result(job.result);
+    return load_artifact(job.id, labels_artifact(made - 1));
 }
 
 Parsed<proto::JobRequest> JobService::read_request(const Job& job) {
@@ -257,13 +288,16 @@ Parsed<proto::JobRequest> JobService::read_request(const Job& job) {
 }
 
 Parsed<JobService::LoadedModel> JobService::load_model(
-    const Job& job, const std::string& encoded_labels
+    const Job& job, const Stored<std::string>& encoded_labels
 ) {
+    if (!encoded_labels) {
+        return tl::unexpected(problem_of(encoded_labels.error()));
+    }
     auto request = read_request(job);
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }
-    auto labels = proto::decode_labels(encoded_labels);
+    auto labels = proto::decode_labels(*encoded_labels);
     const GridSize size = model_size(request->task.parameters);
     if (!labels || labels->size() != size.cell_count()) {
         return tl::unexpected(make_problem("internal", "the job's labels are damaged"));
@@ -271,16 +305,20 @@ Parsed<JobService::LoadedModel> JobService::load_model(
     return LoadedModel{request->task.example, {size, std::move(*labels)}};
 }
 
-Parsed<std::string> JobService::model_digest(const std::string& id, GlbProfile profile) {
-    const auto job = find_finished(id);
+Parsed<std::string> JobService::model_digest(
+    const std::string& id, GlbProfile profile, const std::optional<std::uint32_t>& alternative
+) {
+    const auto job = find_with_model(id, alternative);
     if (!job) {
         return tl::unexpected(job.error());
     }
-    const auto known = jobs_.artifact(id, artifact_name(profile));
+    const std::string name = model_artifact(profile_name(profile), alternative.value_or(0));
+    const auto known = jobs_.artifact(id, name);
     if (known) {
         return *known;
     }
-    const auto loaded = load_model(*job);
+    const auto loaded =
+        load_model(*job, load_artifact(id, labels_artifact(alternative.value_or(0))));
     if (!loaded) {
         return tl::unexpected(loaded.error());
     }
@@ -296,7 +334,7 @@ Parsed<std::string> JobService::model_digest(const std::string& id, GlbProfile p
     if (!pin) {
         return tl::unexpected(problem_of(pin.error()));
     }
-    const auto linked = jobs_.link(id, {artifact_name(profile), (*pin)->digest()});
+    const auto linked = jobs_.link(id, {name, (*pin)->digest()});
     if (!linked) {
         return tl::unexpected(problem_of(linked.error()));
     }
@@ -314,7 +352,7 @@ std::optional<JobService::WholeState> JobService::whole_state(
     if (!job || !proto::is_ended(job->state)) {
         return std::nullopt;
     }
-    auto loaded = load_model(*job);
+    auto loaded = load_model(*job, load_newest_labels(*job));
     // Of the steps in between nothing is kept, so there is one state, and it stands at the end.
     if (!loaded || job->head - 1 != seq) {
         return std::nullopt;
@@ -329,11 +367,11 @@ Parsed<JobService::LoadedModel> JobService::newest_model(const Job& job) {
             return LoadedModel{live->example(), std::move(state.model)};
         }
     }
-    const auto labels = load_labels(job.id);
+    const auto labels = load_newest_labels(job);
     if (!labels && labels.error().code == StoreErrorCode::kNotFound) {
         return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
     }
-    return labels ? load_model(job, *labels) : tl::unexpected(problem_of(labels.error()));
+    return load_model(job, labels);
 }
 
 Parsed<std::string> JobService::preview(const std::string& id) {
@@ -355,12 +393,15 @@ Parsed<std::string> JobService::preview(const std::string& id) {
     return std::move(*glb);
 }
 
-Parsed<std::string> JobService::labels_json(const std::string& id) {
-    const auto job = find_finished(id);
+Parsed<std::string> JobService::labels_json(
+    const std::string& id, const std::optional<std::uint32_t>& alternative
+) {
+    const auto job = find_with_model(id, alternative);
     if (!job) {
         return tl::unexpected(job.error());
     }
-    const auto loaded = load_model(*job);
+    const auto loaded =
+        load_model(*job, load_artifact(id, labels_artifact(alternative.value_or(0))));
     if (!loaded) {
         return tl::unexpected(loaded.error());
     }

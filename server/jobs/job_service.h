@@ -64,14 +64,19 @@ class JobService {
     [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
     [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
 
-    // The finished model's file in a profile, made on first use and kept with the job.
+    // The finished model's file in a profile, made on first use and kept with the job. Of several
+    // the first; an alternative that is named is there as soon as it is made, whatever becomes of
+    // the job.
     // Fails: not-found, not-finished, no-model, expired, too-large.
     [[nodiscard]] proto::Parsed<std::string> model_digest(
-        const std::string& id, GlbProfile profile
+        const std::string& id, GlbProfile profile, const std::optional<std::uint32_t>& alternative
     );
     // The model as far as it is. Fails: not-found, not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
-    [[nodiscard]] proto::Parsed<std::string> labels_json(const std::string& id);
+    // Which and fails: as model_digest().
+    [[nodiscard]] proto::Parsed<std::string> labels_json(
+        const std::string& id, const std::optional<std::uint32_t>& alternative
+    );
 
     // The state of a job at an event or later, for whoever missed frames: labels and the seq up
     // to which they include everything. Nothing when there is no such state (yet).
@@ -110,21 +115,25 @@ class JobService {
     void work(const std::stop_token& stop);
     // Removes what has expired, once a minute whichever worker comes first.
     void expire_now_and_then();
-    // As far as the store tells it; see newest_model() for jobs that run.
-    [[nodiscard]] proto::Parsed<LoadedModel> load_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(
-        const proto::Job& job, const std::string& encoded_labels
+        const proto::Job& job, const Stored<std::string>& encoded_labels
     );
     // The request as it was accepted; its example is found even when it was deleted since.
     [[nodiscard]] proto::Parsed<proto::JobRequest> read_request(const proto::Job& job);
-    [[nodiscard]] Stored<std::string> load_labels(const std::string& id);
+    [[nodiscard]] Stored<std::string> load_artifact(const std::string& id, const std::string& name);
+    // The newest labels, as far as the store tells them; see newest_model() for jobs that run.
+    [[nodiscard]] Stored<std::string> load_newest_labels(const proto::Job& job);
     // Fails: not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
+    // The job, when it has that model.
+    [[nodiscard]] proto::Parsed<proto::Job> find_with_model(
+        const std::string& id, const std::optional<std::uint32_t>& alternative
+    );
     // The request of a job to start from; what the new one needs of it goes to `inputs`.
     // Fails: as find_finished().
     [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
-        const std::string& id, InheritedInputs& inputs
+        const std::string& id, std::uint32_t alternative, InheritedInputs& inputs
     );
 
     JobServiceConfig config_;

@@ -26,7 +26,11 @@ void LiveJob::start(std::uint64_t seq, std::span<const Label> model, bool any_bl
     base_seq_ = seq;
     head_seq_ = seq;
     base_has_block_ = any_block;
-    if (!model.empty()) {
+    patches_.clear();
+    patch_bytes_ = 0;
+    if (model.empty()) {
+        std::fill(base_.labels.begin(), base_.labels.end(), kNoLabel);
+    } else {
         base_.labels.assign(model.begin(), model.end());
     }
 }

@@ -40,7 +40,7 @@ class LiveJob {
     [[nodiscard]] const GridSize& size() const { return base_.size; }
 
     // The initial model stands, or that of a checkpoint with accepted blocks; kNoLabel everywhere
-    // where there is none.
+    // where there is none. Of several models, the next begins so; the one before is forgotten.
     void start(std::uint64_t seq, std::span<const Label> model, bool any_block);
 
     // An accepted block; seqs rise. Patches beyond kPatchBytesMax become part of the older state.

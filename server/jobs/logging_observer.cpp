@@ -36,7 +36,7 @@ std::optional<Checkpoint> decode(const JobCheckpoint& stored, std::size_t cell_c
 }  // namespace
 
 EarlierProgress read_earlier_progress(
-    EventLog& events, const Claim& claim, std::size_t cell_count
+    EventLog& events, const Claim& claim, std::size_t cell_count, bool is_series
 ) {
     EarlierProgress earlier;
     if (claim.solver_version != kSolverVersion) {
@@ -47,7 +47,10 @@ EarlierProgress read_earlier_progress(
         earlier.checkpoint_seq = earlier.checkpoint ? claim.checkpoint->seq : 0;
     }
     constexpr std::size_t kPage = 1000;
-    std::uint64_t after = std::max(earlier.checkpoint_seq, claim.version_base);
+    // What became of candidates stands in the log alone.
+    std::uint64_t after =
+        is_series ? claim.version_base : std::max(earlier.checkpoint_seq, claim.version_base);
+    std::uint32_t blocks = 0;
     while (after < claim.head) {
         const auto page = events.read(claim.lease.job_id, after, kPage);
         if (!page || page->events.empty()) {
@@ -55,7 +58,21 @@ EarlierProgress read_earlier_progress(
         }
         for (const Event& event : page->events) {
             if (event.type == "block") {
-                earlier.blocks.push_back({event.seq, event.fields});
+                ++blocks;
+                if (event.seq > earlier.checkpoint_seq) {
+                    earlier.blocks.push_back({event.seq, event.fields});
+                }
+            } else if (event.type == "alternative") {
+                auto end = proto::parse_alternative_fields(event.fields);
+                if (!end) {
+                    return {};
+                }
+                earlier.candidates.push_back(std::move(*end));
+                earlier.candidate_blocks = blocks;
+                earlier.blocks.clear();
+                if (earlier.checkpoint_seq < event.seq) {
+                    earlier.checkpoint.reset();  // of that candidate
+                }
             }
             after = event.seq;
         }
@@ -69,21 +86,33 @@ LoggingObserver::LoggingObserver(
     const Claim& claim,
     std::function<void(StopReason)> stop,
     std::shared_ptr<LiveJob> live,
-    const EarlierProgress& earlier
+    const EarlierProgress& earlier,
+    const ModelInSeries& place
 )
     : jobs_(jobs),
       running_(running),
       claim_(claim),
       stop_(std::move(stop)),
       live_(std::move(live)),
-      earlier_(earlier) {
+      earlier_(earlier),
+      place_(place),
+      blocks_done_(earlier.blocks_before()) {
     if (earlier_.checkpoint) {
         last_checkpoint_ = begun_;
     }
 }
 
 void LoggingObserver::on_start(std::uint32_t blocks_total, std::span<const Label> model) {
-    blocks_total_ = blocks_total;
+    blocks_total_ = place_.blocks_before + place_.models_left * blocks_total;
+    auto labels = std::make_shared<const std::vector<Label>>(model.begin(), model.end());
+    if (place_.begins_claim) {
+        start_claim(std::move(labels));
+    } else {
+        start_next(std::move(labels));
+    }
+}
+
+void LoggingObserver::start_claim(std::shared_ptr<const std::vector<Label>> labels) {
     // The state that the live job begins with belongs to the seq that it had.
     const bool any_block = earlier_.checkpoint && earlier_.checkpoint->tally.accepted() > 0;
     const std::uint64_t first_replayed = earlier_.blocks.empty() ? 0 : earlier_.blocks.front().seq;
@@ -91,10 +120,9 @@ void LoggingObserver::on_start(std::uint32_t blocks_total, std::span<const Label
                                     : first_replayed > 0 ? first_replayed - 1
                                                          : 0;
     const bool nothing_to_replay = earlier_.blocks.empty();
-    auto labels = std::make_shared<std::vector<Label>>(model.begin(), model.end());
     const bool resumed = !claim_.solver_version.empty();
     std::vector<NewEvent> events;
-    events.push_back({"started", proto::started_fields(blocks_total, resumed), proto::now_millis()}
+    events.push_back({"started", proto::started_fields(blocks_total_, resumed), proto::now_millis()}
     );
     append(
         std::move(events),
@@ -112,8 +140,19 @@ void LoggingObserver::on_start(std::uint32_t blocks_total, std::span<const Label
     );
 }
 
+void LoggingObserver::start_next(std::shared_ptr<const std::vector<Label>> labels) {
+    // Nothing is logged; the newest event is the one before the next.
+    append({}, 0, std::nullopt, [live = live_, labels](std::uint64_t next_seq) {
+        live->start(next_seq - 1, *labels, false);
+    });
+}
+
 void LoggingObserver::on_block(const BlockReport& report) {
-    std::string fields = proto::block_fields(report);
+    blocks_done_ = report.index + 1;
+    BlockReport in_job = report;
+    in_job.index += place_.blocks_before;
+    in_job.blocks_total = blocks_total_;
+    std::string fields = proto::block_fields(in_job, place_.alternative);
     std::shared_ptr<Patch> patch = report.accepted ? make_patch(report) : nullptr;
     const std::uint32_t replayed = report.index - earlier_.blocks_before();
     if (replayed < earlier_.blocks.size()) {
@@ -127,6 +166,31 @@ void LoggingObserver::on_block(const BlockReport& report) {
         report.index + 1,
         make_checkpoint(report),
         [live = live_, patch](std::uint64_t seq) { show(*live, patch, seq); }
+    );
+}
+
+void LoggingObserver::end_candidate(
+    const proto::CandidateEnd& end,
+    std::vector<ArtifactLink> links,
+    std::vector<std::shared_ptr<ArtifactStore::Pin>> artifacts,
+    bool is_last
+) {
+    if (blocks_total_ == 0) {
+        on_start(1, {});  // it was given up before anything was shown of it
+    }
+    std::vector<NewEvent> events;
+    events.push_back({"alternative", proto::alternative_fields(end), proto::now_millis()});
+    append(
+        std::move(events),
+        blocks_done_,
+        std::nullopt,
+        [live = live_, artifacts = std::move(artifacts), is_last](std::uint64_t seq) {
+            // A state after this event is the next model's, which begins at it.
+            if (is_last) {
+                live->pass(seq);
+            }
+        },
+        std::move(links)
     );
 }
 
@@ -195,12 +259,18 @@ void LoggingObserver::append(
     std::vector<NewEvent> events,
     std::uint32_t blocks_done,
     std::optional<JobCheckpoint> checkpoint,
-    std::function<void(std::uint64_t)> then
+    std::function<void(std::uint64_t)> then,
+    std::vector<ArtifactLink> artifacts
 ) {
     jobs_.append(
         claim_.lease,
         std::move(events),
-        {blocks_done, blocks_total_, solved_seconds(), kSolverVersion, std::move(checkpoint)},
+        {place_.blocks_before + blocks_done,
+         blocks_total_,
+         solved_seconds(),
+         kSolverVersion,
+         std::move(checkpoint),
+         std::move(artifacts)},
         [&running = running_,
          id = claim_.lease.job_id,
          then = std::move(then)](const Stored<std::uint64_t>& seq) {

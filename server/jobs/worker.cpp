@@ -6,7 +6,9 @@
 #include "server/jobs/job_inputs.h"
 #include "server/jobs/logging_observer.h"
 #include "server/jobs/store_problem.h"
+#include "server/store/artifact_names.h"
 #include "solver/mesh/glb_writer.h"
+#include "solver/registry/alternatives.h"
 
 #include <chrono>
 #include <exception>
@@ -64,29 +66,139 @@ class ClaimRun {
             }
             request->task.origin = std::move(*origin);
         }
-        solve(request->task);
+        solve(*request);
     }
 
   private:
-    void solve(const Task& task) {
-        const auto live = std::make_shared<LiveJob>(task.example, model_size(task.parameters));
-        context_.live.add(claim_.lease.job_id, live);
+    // A model that is on disk, held until it is linked to the job.
+    struct Kept {
+        proto::JobResult result;
+        std::vector<ArtifactLink> links;
+        std::vector<std::shared_ptr<ArtifactStore::Pin>> pins;
+    };
+
+    void solve(const proto::JobRequest& request) {
+        const GridSize size = model_size(request.task.parameters);
+        live_ = std::make_shared<LiveJob>(request.task.example, size);
+        context_.live.add(claim_.lease.job_id, live_);
         if (claim_.deadline_seconds) {
             const std::chrono::duration<double> left(
                 *claim_.deadline_seconds - claim_.solved_seconds
             );
             running_.set_deadline(Clock::now() + std::chrono::duration_cast<Clock::duration>(left));
         }
+        if (request.alternatives) {
+            make_several(request.task, *request.alternatives);
+        } else {
+            make_one(request.task);
+        }
+        context_.live.retire(claim_.lease.job_id);
+    }
+
+    void make_one(const Task& task) {
         const EarlierProgress earlier =
-            read_earlier_progress(context_.events, claim_, live->size().cell_count());
-        LoggingObserver observer(
+            read_earlier_progress(context_.events, claim_, live_->size().cell_count(), false);
+        LoggingObserver observer = make_observer(earlier, {});
+        auto kept = make(task, earlier, observer, std::nullopt);
+        if (!kept) {
+            return;
+        }
+        if (!*kept) {
+            stopped_or_failed(kept->error(), observer.solved_seconds());
+            return;
+        }
+        Outcome outcome;
+        outcome.state = proto::JobState::kSucceeded;
+        outcome.result = proto::to_json((*kept)->result);
+        outcome.artifacts = std::move((*kept)->links);
+        finish(std::move(outcome));
+    }
+
+    // Candidates one after another until there are as many different models as wanted; each is
+    // logged and linked to the job when it is there.
+    void make_several(Task task, std::uint32_t wanted) {
+        EarlierProgress earlier =
+            read_earlier_progress(context_.events, claim_, live_->size().cell_count(), true);
+        Alternatives series(task.seed, wanted);
+        std::vector<std::string> results;
+        for (const proto::CandidateEnd& end : earlier.candidates) {
+            take_earlier(end, series, results);
+        }
+        ModelInSeries place;
+        place.blocks_before = earlier.candidate_blocks;
+        while (!series.is_complete()) {
+            place.alternative = series.made();
+            place.models_left = wanted - series.made();
+            task.seed = series.next_seed();
+            proto::CandidateEnd end = {series.candidates(), series.made(), task.seed, {}, {}, {}};
+            LoggingObserver observer = make_observer(earlier, place);
+            auto kept =
+                make(task, earlier, observer, proto::JobResult::Place{end.alternative, end.seed});
+            if (!kept) {
+                return;
+            }
+            if (*kept) {
+                end.same = series.add((*kept)->result.sha256);
+                end.result = end.same ? "" : proto::to_json((*kept)->result);
+            } else {
+                const bool goes_on = series.add_failure(kept->error().code);
+                if (!goes_on && (results.empty() || kept->error().code != ErrorCode::kGaveUp)) {
+                    stopped_or_failed(kept->error(), observer.solved_seconds());
+                    return;
+                }
+                end.error = proto::to_json(proto::problem_of(kept->error()));
+            }
+            if (end.result.empty()) {
+                observer.end_candidate(end, {}, {}, series.is_complete());
+            } else {
+                results.push_back(end.result);
+                observer.end_candidate(
+                    end, std::move((*kept)->links), std::move((*kept)->pins), series.is_complete()
+                );
+            }
+            place.blocks_before += observer.blocks_done();
+            place.begins_claim = false;
+            earlier = {};
+        }
+        Outcome outcome;
+        outcome.state = proto::JobState::kSucceeded;
+        outcome.result = proto::to_json(results);
+        finish(std::move(outcome));
+    }
+
+    // What became of a candidate before this claim.
+    static void take_earlier(
+        const proto::CandidateEnd& end, Alternatives& series, std::vector<std::string>& results
+    ) {
+        if (!end.result.empty()) {
+            static_cast<void>(series.add(proto::result_digest(end.result)));
+            results.push_back(end.result);
+        } else if (end.same) {
+            static_cast<void>(series.add(proto::result_digest(results.at(*end.same))));
+        } else {
+            static_cast<void>(series.add_failure(ErrorCode::kGaveUp));
+        }
+    }
+
+    LoggingObserver make_observer(const EarlierProgress& earlier, const ModelInSeries& place) {
+        return {
             context_.jobs,
             context_.running,
             claim_,
             [this](StopReason reason) { running_.request_stop(reason); },
-            live,
-            earlier
-        );
+            live_,
+            earlier,
+            place};
+    }
+
+    // A model of the task's seed, on disk, or why there is none; nothing when the job has ended
+    // by it.
+    std::optional<Result<Kept>> make(
+        const Task& task,
+        const EarlierProgress& earlier,
+        LoggingObserver& observer,
+        const std::optional<proto::JobResult::Place>& place
+    ) {
         const auto begun = Clock::now();
         const Checkpoint* from = earlier.checkpoint ? &*earlier.checkpoint : nullptr;
         auto finished = modelsynth::run(
@@ -102,45 +214,59 @@ class ClaimRun {
             fail(proto::make_problem(
                 "internal", "solving the job again after a restart gave another model"
             ));
-        } else if (finished) {
-            succeed(task, *finished, solving.count());
-        } else {
-            stopped_or_failed(finished.error(), *live, observer.solved_seconds());
+            return std::nullopt;
         }
-        context_.live.retire(claim_.lease.job_id);
-    }
-
-    void succeed(const Task& task, const Finished& finished, double solve_seconds) {
-        const Box whole = Box::whole(finished.model.size);
-        auto glb = write_glb(make_scene(task.example, finished.model, whole));
+        if (!finished) {
+            return tl::unexpected(std::move(finished.error()));
+        }
+        auto glb =
+            write_glb(make_scene(task.example, finished->model, Box::whole(finished->model.size)));
         if (!glb) {
-            fail(proto::problem_of(glb.error()));
-            return;
+            return tl::unexpected(std::move(glb.error()));
         }
-        const auto model_pin = context_.artifacts.put(*glb);
-        const auto labels_pin = context_.artifacts.put(proto::encode_labels(finished.model.labels));
-        if (!model_pin || !labels_pin) {
-            fail(problem_of(model_pin ? labels_pin.error() : model_pin.error()));
-            return;
+        auto kept = keep(*glb, *finished, place);
+        if (!kept) {
+            fail(problem_of(kept.error()));
+            return std::nullopt;
         }
-        Outcome outcome;
-        outcome.state = proto::JobState::kSucceeded;
-        outcome.result = proto::to_json(proto::JobResult{
-            claim_.lease.job_id,
-            glb->size(),
-            (*model_pin)->digest(),
-            finished.stats,
-            solve_seconds,
-            finished.model.size});
-        outcome.artifacts = {
-            {"nodes.glb", (*model_pin)->digest()}, {"labels", (*labels_pin)->digest()}};
-        link_example(outcome);
-        finish(std::move(outcome));
+        kept->result.solve_seconds = solving.count();
+        return std::move(*kept);
     }
 
-    void stopped_or_failed(const Error& error, const LiveJob& live, double solved_seconds) {
+    Stored<Kept> keep(
+        const std::string& glb,
+        const Finished& finished,
+        const std::optional<proto::JobResult::Place>& place
+    ) {
+        const std::uint32_t alternative = place ? place->alternative : 0;
+        Kept kept;
+        const auto put = [&](const std::string& name, const std::string& bytes) -> Stored<void> {
+            return context_.artifacts.put(bytes).map([&](std::unique_ptr<ArtifactStore::Pin> pin) {
+                kept.links.push_back({name, pin->digest()});
+                kept.pins.push_back(std::move(pin));
+            });
+        };
+        auto stored = put(model_artifact("nodes", alternative), glb).and_then([&] {
+            return put(labels_artifact(alternative), proto::encode_labels(finished.model.labels));
+        });
+        if (!stored) {
+            return tl::unexpected(std::move(stored.error()));
+        }
+        kept.result = {
+            claim_.lease.job_id,
+            glb.size(),
+            kept.links.front().digest,
+            finished.stats,
+            0,
+            finished.model.size,
+            place};
+        link_example(kept.links);
+        return kept;
+    }
+
+    void stopped_or_failed(const Error& error, double solved_seconds) {
         if (error.code != ErrorCode::kCancelled) {
-            end_unfinished(proto::JobState::kFailed, proto::problem_of(error), live);
+            end_unfinished(proto::JobState::kFailed, proto::problem_of(error));
             return;
         }
         switch (running_.reason()) {
@@ -154,8 +280,7 @@ class ClaimRun {
                         "deadline-exceeded",
                         "the job was solving for longer than its deadline of " +
                             std::to_string(*claim_.deadline_seconds) + " seconds"
-                    ),
-                    live
+                    )
                 );
                 return;
             case StopReason::kLost:
@@ -164,35 +289,33 @@ class ClaimRun {
                 return;
             case StopReason::kCancelled:
             case StopReason::kNone:
-                end_unfinished(proto::JobState::kCancelled, std::nullopt, live);
+                end_unfinished(proto::JobState::kCancelled, std::nullopt);
                 return;
         }
     }
 
     // An uploaded example may be deleted while the job's model is kept; what the model's other
     // profiles are made from stays with the job.
-    void link_example(Outcome& outcome) const {
+    void link_example(std::vector<ArtifactLink>& links) const {
         if (!example_digest_.empty()) {
-            outcome.artifacts.push_back({kExampleArtifact, example_digest_});
+            links.push_back({kExampleArtifact, example_digest_});
         }
     }
 
     // Ends the job with what there is of its model as its preview.
-    void end_unfinished(
-        proto::JobState state, const std::optional<proto::Problem>& problem, const LiveJob& live
-    ) {
+    void end_unfinished(proto::JobState state, const std::optional<proto::Problem>& problem) {
         Outcome outcome;
         outcome.state = state;
         if (problem) {
             outcome.error = proto::to_json(*problem);
         }
-        const LiveJob::State preview = live.state();
+        const LiveJob::State preview = live_->state();
         std::optional<Stored<std::unique_ptr<ArtifactStore::Pin>>> pin;
         if (preview.any_block) {
             pin = context_.artifacts.put(proto::encode_labels(preview.model.labels));
             if (*pin) {
-                outcome.artifacts = {{"labels", (**pin)->digest()}};
-                link_example(outcome);
+                outcome.artifacts = {{kPreviewArtifact, (**pin)->digest()}};
+                link_example(outcome.artifacts);
             }
         }
         finish(std::move(outcome));
@@ -223,6 +346,7 @@ class ClaimRun {
     std::uint32_t threads_;
     RunningJobs::Entry running_;
     std::string example_digest_;  // of an uploaded example's text
+    std::shared_ptr<LiveJob> live_;
 };
 
 }  // namespace

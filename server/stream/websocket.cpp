@@ -191,7 +191,13 @@ net::awaitable<bool> write_event(Session& session, const Event& event) {
     if (!co_await write(session, text, false)) {
         co_return false;
     }
-    if (session.upgrade.partial == Partial::kNone || !is_accepted_block(event)) {
+    if (session.upgrade.partial == Partial::kNone) {
+        co_return true;
+    }
+    if (event.type == "alternative" && event.seq > session.whole_seq) {
+        session.needs_whole = true;  // the next model begins anew
+    }
+    if (!is_accepted_block(event)) {
         co_return true;
     }
     if (session.needs_whole) {  // then the block's frame is the whole state

@@ -69,4 +69,10 @@ std::uint64_t RandomStream::below_wide(std::uint64_t bound) {
     return multiply_high(high << 32 | next(), bound);
 }
 
+std::uint64_t derive_seed(const RandomKey& key) {
+    RandomStream random(key);
+    const std::uint64_t high = random.next() >> 11;
+    return high << 32 | random.next();
+}
+
 }  // namespace modelsynth

@@ -44,4 +44,7 @@ class RandomStream {
     std::uint32_t left_ = 0;
 };
 
+// A seed for another run, as requests have them: at most 2^53 - 1. O(1).
+[[nodiscard]] std::uint64_t derive_seed(const RandomKey& key);
+
 }  // namespace modelsynth

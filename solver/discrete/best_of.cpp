@@ -95,12 +95,7 @@ class Contest {
 }  // namespace
 
 std::uint64_t candidate_seed(std::uint64_t seed, std::uint32_t candidate) {
-    if (candidate == 0) {
-        return seed;
-    }
-    RandomStream random({seed, candidate, 0, kPurposeCandidate});
-    const std::uint64_t high = random.next() >> 11;
-    return high << 32 | random.next();
+    return candidate == 0 ? seed : derive_seed({seed, candidate, 0, kPurposeCandidate});
 }
 
 Result<BestSeed> find_best_seed(

@@ -192,8 +192,10 @@ TEST(Fuzz, JobsThatStartFromAnother) {
     Silent observer;
     const auto first = run(earlier->task, preparations, observer, {});
     ASSERT_TRUE(first) << first.error().message;
-    const auto find = [&earlier](const std::string& id) -> proto::Parsed<proto::JobRequest> {
-        if (id == "a") {
+    const auto find = [&earlier](
+                          const std::string& id, std::uint32_t alternative
+                      ) -> proto::Parsed<proto::JobRequest> {
+        if (id == "a" && alternative < 5) {
             return *earlier;
         }
         return tl::unexpected(proto::make_problem("not-found", "there is no such job"));
@@ -201,9 +203,9 @@ TEST(Fuzz, JobsThatStartFromAnother) {
     constexpr std::size_t kMadeCellsMax = 1000;
     std::size_t made = 0;
     const std::string request =
-        R"({"from":{"job":"a","size":[4,2,4],"at":[1,0,0],"box":{"min":[2,0,1],"max":[4,2,3]},)"
+        R"({"from":{"job":"a","alternative":4,"size":[4,2,4],"at":[1,0,0],"box":{"min":[2,0,1],"max":[4,2,3]},)"
         R"("cells":[[0,0,0],[1,1,3]],"voxels":{"size":[1,1,2],"values":[0.75,0]}},"seed":3,)"
-        R"("parameters":{"size":[6,2,5],"order":"random","weights":{"wall":3}},"priority":1})";
+        R"("parameters":{"size":[6,2,5],"order":"random","weights":{"wall":3}},"alternatives":2,"priority":1})";
     fuzz(request, 9, [&](const std::string& text) {
         const auto parsed = proto::parse_job_request(text, {}, none, find, 1);
         if (!parsed) {

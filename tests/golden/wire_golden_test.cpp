@@ -97,6 +97,19 @@ TEST(Golden, Events) {
     text += event_json(6, "failed", time + 6, failed_fields(to_json(problem))) + "\n";
     text += event_json(6, "cancelled", time + 7, "{}") + "\n";
     text += event_json(6, "snapshot", time + 8, snapshot_fields(to_json(queued_job()))) + "\n";
+    text += event_json(7, "block", time + 9, block_fields(accepted, 1)) + "\n";
+    const std::string result = to_json(JobResult{
+        "x", 123, std::string(64, 'b'), {{{1}, 0, 0}, 0.5}, 0.5, {1, 2, 3}, {{1, 99}}});
+    text += event_json(8, "alternative", time + 10, alternative_fields({2, 1, 99, result, {}, {}}));
+    text += "\n";
+    text +=
+        event_json(9, "alternative", time + 11, alternative_fields({3, 2, 98, {}, 1, {}})) + "\n";
+    text += event_json(
+        10, "alternative", time + 12, alternative_fields({4, 2, 97, {}, {}, to_json(problem)})
+    );
+    text += "\n";
+    text += event_json(11, "succeeded", time + 13, succeeded_fields(to_json(std::vector{result})));
+    text += "\n";
     expect_golden("events.txt", text);
 }
 

@@ -410,6 +410,48 @@ def test_a_job_is_submitted_from_a_finished_one(server, tmp_path):
     assert "/from/job" in errors
 
 
+def series_files(directory):
+    return {path.name: path.read_bytes() for path in directory.iterdir()}
+
+
+def test_several_models_come_as_numbered_files_from_the_server_and_without(server, tmp_path):
+    made = {}
+    for where, options in (("server", {"server": server.url}), ("local", {})):
+        (tmp_path / where).mkdir()
+        report = json.loads(succeed(
+            "run", *SMALL, "--alternatives", 3, "-o", tmp_path / where / "castle.glb", "--json",
+            *([] if options else ["--local"]), **options,
+        ))  # fmt: skip
+        names = [f"{tmp_path}/{where}/castle{end}.glb" for end in ("", "-1", "-2")]
+        assert [entry["file"] for entry in report["alternatives"]] == names
+        assert report["file"] == names[0]
+        made[where] = series_files(tmp_path / where)
+        assert [entry["bytes"] for entry in report["alternatives"]] == \
+               [len(made[where][os.path.basename(name)]) for name in names]
+    assert made["server"] == made["local"]
+    assert len(set(made["server"].values())) == 3
+    # The same ones by themselves.
+    job = json.loads(get(f"{server.url}/v1/jobs?limit=1"))["items"][0]["id"]
+    for number, name in enumerate(("castle.glb", "castle-1.glb", "castle-2.glb")):
+        out = tmp_path / "one.glb"
+        succeed("fetch", job, "--alternative", number, "-o", out, server=server.url)
+        assert out.read_bytes() == made["server"][name]
+        succeed("fetch", job, "--alternative", number, "--labels", "-o", out, server=server.url)
+        assert json.loads(out.read_text())["size"] == [20, 6, 20]
+    fail(1, "fetch", job, "--alternative", 3, "-o", out, server=server.url)
+    fail(2, "fetch", job, "--alternative", 0, "--preview", "-o", out, server=server.url)
+
+
+def test_several_models_without_a_server_keep_their_names_in_every_profile(tmp_path):
+    out = tmp_path / "castle.glb"
+    succeed("run", "--local", *SMALL, "--alternatives", 2, "--profile", "merged", "-o", out)
+    files = series_files(tmp_path)
+    assert set(files) == {"castle.glb", "castle-1.glb"}
+    assert len(set(files.values())) == 2
+    assert "standard output" in fail(
+        2, "run", "--local", *SMALL, "--alternatives", 2, "-o", "-")
+
+
 def test_list_shows_jobs_newest_first(server):
     jobs = [submit(server, *SMALL) for _ in range(3)]
     succeed("follow", jobs[-1], server=server.url)

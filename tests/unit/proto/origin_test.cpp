@@ -38,7 +38,8 @@ class Origin : public testing::Test {
             body,
             limits,
             find_built_in,
-            [this](const std::string& id) -> Parsed<JobRequest> {
+            [this](const std::string& id, std::uint32_t alternative) -> Parsed<JobRequest> {
+                alternative_ = alternative;
                 if (const auto job = jobs_.find(id); job != jobs_.end()) {
                     return job->second;
                 }
@@ -85,6 +86,7 @@ class Origin : public testing::Test {
 
     std::map<std::string, JobRequest> jobs_;
     std::map<std::string, std::string> problems_;
+    std::optional<std::uint32_t> alternative_;  // that was asked for last
 };
 
 using Pointers = std::vector<std::string>;
@@ -145,6 +147,34 @@ TEST_F(Origin, TheEchoTellsWhereItStandsAndWhatIsMadeAnew) {
     EXPECT_EQ(request.from->origin.at, (Cell{1, 0, 2}));
     EXPECT_EQ(request.from->origin.remade.box, (Box{{0, 0, 0}, {2, 8, 2}}));
     EXPECT_EQ(request.from->origin.remade.cells, (std::vector<Cell>{{3, 3, 3}}));
+}
+
+TEST_F(Origin, TheAlternativeIsAskedForAndStandsInTheEcho) {
+    jobs_["one"] = accept(
+        R"({"solver": "discrete", "example": "castle", "seed": 5, "alternatives": 4,
+            "parameters": {"size": [20, 8, 20]}})"
+    );
+    const JobRequest third = accept(R"({"from": {"job": "one", "alternative": 2}})");
+    EXPECT_EQ(alternative_, 2U);
+    EXPECT_EQ(third.from->alternative, 2U);
+    EXPECT_NE(third.echo.find(R"("alternative":2)"), std::string::npos) << third.echo;
+    EXPECT_FALSE(third.alternatives);
+    const JobRequest first = accept(R"({"from": {"job": "one"}, "alternatives": 2})");
+    EXPECT_EQ(alternative_, 0U);
+    EXPECT_EQ(first.echo.find(R"("alternative":)"), std::string::npos) << first.echo;
+    EXPECT_EQ(first.alternatives, 2U);
+}
+
+TEST_F(Origin, AnAlternativeThatIsNotThereIsAFaultOfTheRequest) {
+    const auto request = parse(R"({"from": {"job": "none", "alternative": 63}})");
+    ASSERT_FALSE(request);
+    EXPECT_EQ(request.error().errors.front().pointer, "/from/alternative");
+    for (const char* bad : {"64", "-1", "1.5", "null", "\"1\""}) {
+        const auto refused =
+            parse(R"({"from": {"job": "none", "alternative": )" + std::string(bad) + "}}");
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().errors.front().pointer, "/from/alternative") << bad;
+    }
 }
 
 TEST_F(Origin, AnEchoIsReadWithoutTheEarlierJob) {

@@ -109,6 +109,57 @@ TEST(JobRequest, LimitsHoldAtTheirEdge) {
     EXPECT_FALSE(sized("[4097, 1, 1]"));
 }
 
+TEST(JobRequest, AlternativesHaveTheLimitsOfOneModelTogether) {
+    const auto request = [](const std::string& alternatives, const std::string& parameters) {
+        return parse(
+            R"({"solver": "discrete", "example": "castle", "alternatives": )" + alternatives +
+            R"(, "parameters": )" + parameters + "}"
+        );
+    };
+    const auto fault = [&](const std::string& alternatives, const std::string& parameters) {
+        const auto refused = request(alternatives, parameters);
+        return refused ? std::string("accepted")
+                       : refused.error().type + " " + refused.error().errors.front().pointer;
+    };
+    const std::string cells = R"({"size": [250, 10, 250]})";  // 625 000
+    EXPECT_EQ(request("6", cells)->alternatives, 6U);
+    EXPECT_EQ(fault("7", cells), "/problems/too-large /alternatives");
+    const std::string blocks =  // 10 000 in each
+        R"({"size": [200, 2, 200], "blocks": {"size": [2, 2, 2], "overlap": 0}})";
+    EXPECT_EQ(request("20", blocks)->alternatives, 20U);
+    EXPECT_EQ(fault("21", blocks), "/problems/too-large /alternatives");
+    const std::string small = R"({"size": [10, 8, 10]})";
+    EXPECT_EQ(request("64", small)->alternatives, 64U);
+    for (const char* bad : {"0", "65", "-1", "1.5", "null", "\"3\""}) {
+        EXPECT_EQ(fault(bad, small), "/problems/invalid-request /alternatives") << bad;
+    }
+}
+
+TEST(JobEvents, WhatBecameOfACandidateIsReadAsItWasWritten) {
+    const auto round = [](const CandidateEnd& end) {
+        return parse_alternative_fields(alternative_fields(end)).value_or(CandidateEnd{});
+    };
+    const CandidateEnd made = round({3, 2, 17, R"({"sha256":"ab"})", {}, {}});
+    EXPECT_EQ(made.candidate, 3U);
+    EXPECT_EQ(made.alternative, 2U);
+    EXPECT_EQ(made.seed, 17U);
+    EXPECT_EQ(made.result, R"({"sha256":"ab"})");
+    EXPECT_EQ(result_digest(made.result), "ab");
+    EXPECT_EQ(round({3, 2, 17, {}, 1, {}}).same, 1U);
+    EXPECT_EQ(round({3, 2, 17, {}, {}, R"({"status":500})"}).error, R"({"status":500})");
+    for (const char* none :
+         {"",
+          "7",
+          "[]",
+          "{}",
+          R"({"alternative":0,"candidate":0,"seed":1})",
+          R"({"alternative":0,"candidate":0,"seed":1,"result":3})",
+          R"({"alternative":0,"candidate":0,"seed":-1,"same_as":0})",
+          R"({"alternative":0,"candidate":0,"seed":1,"same_as":0,"result":{}})"}) {
+        EXPECT_FALSE(parse_alternative_fields(none)) << none;
+    }
+}
+
 TEST(Json, RefusesDepthDuplicatesAndTextAfterANul) {
     EXPECT_EQ(parse(std::string(100'000, '[')).error().type, "/problems/malformed-json");
     EXPECT_EQ(
