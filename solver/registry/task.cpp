@@ -1,9 +1,11 @@
 #include "solver/registry/task.h"
 
+#include "solver/discrete/analysis/infallibility.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -19,6 +21,26 @@ const discrete::Example& discrete_of(const Example& example) {
 
 const discrete::Parameters& discrete_of(const Parameters& parameters) {
     return std::get<discrete::Parameters>(parameters);
+}
+
+// Models of so many cells are made whole within some ten milliseconds; larger ones in blocks all
+// the same, so that there is something to watch and work for several threads.
+constexpr std::size_t kWholeCellsMax = std::size_t{1} << 18;
+
+// Whether the whole is made in one pass without a dead end, as far as that is proved (thesis
+// 3.3.7): then blocks would only cost time.
+bool is_made_in_one_pass(const discrete::Parameters& parameters, const discrete::Example& example) {
+    const auto is_free = [](const auto& side) {
+        return side->kind == discrete::BoundaryKind::kFree;
+    };
+    const auto* list = std::get_if<discrete::WeightList>(&*parameters.weights);
+    const bool removes_none =
+        list == nullptr ||
+        std::all_of(list->begin(), list->end(), [](const auto& named) { return named.second > 0; });
+    return parameters.size->cell_count() <= kWholeCellsMax &&
+           parameters.order == discrete::CellOrder{} && parameters.constraints.empty() &&
+           std::all_of(parameters.boundary.begin(), parameters.boundary.end(), is_free) &&
+           removes_none && discrete::is_proved_infallible(example);
 }
 
 }  // namespace
@@ -48,7 +70,12 @@ Scene pieces_scene(const Example& example) {
 }
 
 Parameters with_defaults(const Parameters& parameters, const Example& example) {
-    return discrete::fill_defaults(discrete_of(parameters), discrete_of(example));
+    const discrete::Parameters& given = discrete_of(parameters);
+    discrete::Parameters filled = discrete::fill_defaults(given, discrete_of(example));
+    if (!given.blocks && is_made_in_one_pass(filled, discrete_of(example))) {
+        filled.blocks.emplace(std::nullopt);
+    }
+    return filled;
 }
 
 std::vector<Fault> find_faults(const Example& example, const Parameters& parameters) {

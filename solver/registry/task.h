@@ -55,6 +55,7 @@ struct Task {
     std::shared_ptr<const discrete::Origin> origin = nullptr;  // null: made from nothing
 };
 
+// Where the whole is proved to be made in one pass, that is the default (thesis 3.3.7).
 [[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);
 [[nodiscard]] std::vector<Fault> find_faults(const Example& example, const Parameters& parameters);
 

@@ -123,6 +123,37 @@ def test_what_is_infallible_is_not_split(server):
     assert analysis(server, uploaded(server, FREE))["splitting"] is None
 
 
+FREE_SIDES = {side: "free" for side in ("bottom", "top", "north", "south", "west", "east")}
+
+
+@pytest.mark.parametrize("example", [FREE, {**STRIPES, "boundary": FREE_SIDES}],
+                         ids=lambda example: example["name"])
+def test_what_is_proved_infallible_is_made_whole_in_one_pass(server, example):
+    assert analysis(server, uploaded(server, example))["verdict"] == "infallible"
+    height = 1 if example is FREE else 2
+    answer = server.request("POST", "/v1/jobs", {
+        "solver": "discrete", "example": example, "parameters": {"size": [30, height, 60]}},
+        headers={"Prefer": "wait=60"})
+    job = answer.json()
+    assert job["state"] == "succeeded", job["error"]
+    assert job["request"]["parameters"]["blocks"] is None
+    assert job["result"]["stats"]["solved_by"]["first_try"] == 1
+    assert job["result"]["stats"]["backtracks"] == 0
+
+
+@pytest.mark.parametrize("parameters", [
+    {"size": [513, 1, 512]}, {"blocks": {}}, {"order": "random"}, {"weights": {"a": 0}},
+    {"boundary": {"west": "a"}}, {"boundary": {"west": "periodic", "east": "periodic"}},
+    {"constraints": [{"kind": "max_run", "pieces": ["a"], "max": 3}]}], ids=str)
+def test_what_the_proof_does_not_cover_is_made_in_blocks(server, parameters):
+    assert analysis(server, uploaded(server, FREE))["verdict"] == "infallible"
+    answer = server.request("POST", "/v1/jobs", {
+        "solver": "discrete", "example": FREE, "deadline": 0.001,
+        "parameters": {"size": [30, 1, 60], **parameters}})
+    assert answer.status == 202, answer.body
+    assert answer.json()["request"]["parameters"]["blocks"]["size"]
+
+
 def test_labels_to_be_warned_of_are_named(server):
     example = {**STRIPES, "pieces": STRIPES["pieces"] + [{"name": "unused"}],
                "boundary": {"bottom": "red", "top": "air"}}

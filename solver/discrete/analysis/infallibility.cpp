@@ -183,9 +183,14 @@ bool is_proved_infallible(const Example& example, std::uint64_t steps_max) {
         return true;
     }
     Work work(steps_max, {});
-    const GridSize region = smallest_region(transitions.open);
-    return check_corners(transitions, work) == ProofOutcome::kProved ||
-           prove_by_region(transitions, region, work) == ProofOutcome::kProved;
+    if (check_corners(transitions, work) == ProofOutcome::kProved) {
+        return true;
+    }
+    const std::vector<GridSize> candidates = regions(transitions);
+    return std::any_of(candidates.begin(), candidates.end(), [&](const GridSize& region) {
+        return work.left() > 0 &&
+               prove_by_region(transitions, region, work) == ProofOutcome::kProved;
+    });
 }
 
 std::string describe(const Counterexample& counterexample, const Example& example) {

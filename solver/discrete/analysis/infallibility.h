@@ -64,7 +64,7 @@ struct InfallibilityOptions {
 
 // Whether it is proved, with little work, that models of an example are made whole in one pass
 // without a dead end: by the example's own boundary, which must leave all sides free, by Eq. 3.11
-// or by the smallest region.
+// or by a small region.
 //
 // What true covers: the sizes of InfallibilityVerdict, with all sides free, nothing fixed and no
 // constraints, and with no label removed by a weight of 0 that the example does not remove; the
