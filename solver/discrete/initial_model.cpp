@@ -18,8 +18,11 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// Beyond, the search needs more memory than a model in blocks should.
+// Beyond, the search needs more memory than a model in blocks should, ...
 constexpr std::size_t kWholeFirstCellsMax = std::size_t{1} << 17;
+// ... some 150 bytes a cell; but where blocks could not change the plain model nor, most likely, a
+// tile, the only other thing to have is nothing.
+constexpr std::size_t kWholeOrNothingCellsMax = std::size_t{1} << 22;
 constexpr std::uint32_t kWholeFirstAttempts = 4;
 
 Error gave_up(const Example& example, const Problem& problem) {
@@ -88,7 +91,10 @@ class Finder {
                 return model;
             }
         } else {
-            if (problem_.size.cell_count() <= kWholeFirstCellsMax) {
+            const std::size_t cells_max = preparation_.is_plain_model_rigid()
+                                              ? kWholeOrNothingCellsMax
+                                              : kWholeFirstCellsMax;
+            if (problem_.size.cell_count() <= cells_max) {
                 auto model = solve_whole(kWholeFirstAttempts, nullptr);
                 if (!model) {
                     return tl::unexpected(std::move(model.error()));

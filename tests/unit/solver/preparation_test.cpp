@@ -104,13 +104,15 @@ TEST(InitialModel, OfAirThatNoBlockCanChangeIsNotTaken) {
         testing::make_example({2, 3, 2}, {0, 1, 1, 0, 2, 2, 2, 2, 2, 2, 2, 2}, 3)
     );
     example->empty = 2;
-    const Parameters parameters = sized(*example, {20, 3, 20});
-    const auto preparation = Preparation::make(example, parameters).value();
-    EXPECT_FALSE(preparation->plain_model());
-    EXPECT_TRUE(preparation->is_plain_model_rigid());
-    const std::vector<Label> labels = labels_of(*preparation, 4);
-    EXPECT_FALSE(testing::find_inconsistency(*example, {20, 3, 20}, labels));
-    EXPECT_GT(std::count(labels.begin(), labels.end(), Label{0}), 0);
+    // Of any size: a tile that repeats would be air as well.
+    for (const GridSize& size : {GridSize{20, 3, 20}, GridSize{300, 3, 300}}) {
+        const auto preparation = Preparation::make(example, sized(*example, size)).value();
+        EXPECT_FALSE(preparation->plain_model());
+        EXPECT_TRUE(preparation->is_plain_model_rigid());
+        const std::vector<Label> labels = labels_of(*preparation, 4);
+        EXPECT_FALSE(testing::find_inconsistency(*example, size, labels));
+        EXPECT_GT(std::count(labels.begin(), labels.end(), Label{0}), 0);
+    }
 }
 
 TEST(InitialModel, OfGroundIsPlainAndDependsOnNoSeed) {

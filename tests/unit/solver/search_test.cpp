@@ -134,7 +134,7 @@ TEST(AttemptPlan, BeginsWithTheOrderAskedForAndTakesBackMoreAndMore) {
         before = attempt_plan(attempt).budget.backtracks;
         EXPECT_LE(attempt_plan(attempt + 1).budget.backtracks, before);
     }
-    EXPECT_EQ(attempt_plan(1).budget.backtracks, 32U);
+    EXPECT_EQ(attempt_plan(1).budget.backtracks, 8U);
     EXPECT_EQ(attempt_plan(2).budget.backtracks, 0U);
     EXPECT_EQ(before, 1000U);
 }
