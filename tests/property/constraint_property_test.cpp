@@ -24,7 +24,7 @@ using testing::RecordingObserver;
 // How many random cases; MODELSYNTH_CASES asks for more.
 std::uint64_t case_count() {
     const char* asked = std::getenv("MODELSYNTH_CASES");
-    return asked == nullptr ? 1200 : std::strtoull(asked, nullptr, 10);
+    return asked == nullptr ? 3000 : std::strtoull(asked, nullptr, 10);
 }
 
 struct Case {

@@ -2,11 +2,13 @@
 #include "solver/discrete/faults.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
+#include "tests/support/chi_squared.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <set>
 #include <string>
@@ -170,6 +172,44 @@ TEST(DiscreteProperty, EqualRequestsGiveEqualModelsAndOtherSeedsOthers) {
         }
     }
     EXPECT_GT(different, 10U);
+}
+
+// Where any pieces may be neighbours every cell is a draw by the weights, whatever comes first.
+TEST(DiscreteProperty, LabelsAreChosenByTheirWeightsInEveryOrder) {
+    constexpr std::array<double, 6> kWeights = {1, 2, 0, 3, 5, 9};
+    Example example = testing::make_example({0, 0, 0}, {}, kWeights.size());
+    WeightList named;
+    for (Label a = 0; a < kWeights.size(); ++a) {
+        named.emplace_back(example.pieces[a].name, kWeights.at(a));
+        for (Label b = 0; b < kWeights.size(); ++b) {
+            example.adjacency.push_back({0, a, b});
+            example.adjacency.push_back({2, a, b});
+        }
+    }
+    for (const Order order :
+         {Order::kScan, Order::kMinEntropy, Order::kFewestLabels, Order::kRandom, Order::kGrowth}) {
+        for (const bool in_blocks : {true, false}) {
+            Parameters parameters;
+            parameters.size = GridSize{60, 1, 70};
+            parameters.order.order = order;
+            parameters.weights = named;
+            if (!in_blocks) {
+                parameters.blocks.emplace(std::nullopt);
+            }
+            std::array<std::uint64_t, kWeights.size()> counts = {};
+            for (std::uint64_t seed = 0; seed < 5; ++seed) {
+                RecordingObserver observer;
+                const auto model =
+                    synthesise(example, fill_defaults(parameters, example), seed, observer, {});
+                ASSERT_TRUE(model) << model.error().message;
+                for (const Label label : model->labels) {
+                    ++counts.at(label);
+                }
+            }
+            EXPECT_LT(testing::chi_squared_deviation(counts, kWeights), 3.7)
+                << static_cast<int>(order) << in_blocks;
+        }
+    }
 }
 
 // All models of a tiny size, by brute force; the solver must find one exactly when there is one.

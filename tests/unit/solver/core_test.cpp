@@ -5,6 +5,7 @@
 #include "solver/core/label_weights.h"
 #include "solver/core/random.h"
 #include "solver/core/site_domains.h"
+#include "tests/support/chi_squared.h"
 #include "tests/support/graph.h"
 
 #include <gtest/gtest.h>
@@ -56,16 +57,12 @@ TEST(RandomStream, BelowIsUniformByChiSquared) {
     RandomStream random({42, 0, 0, 0});
     constexpr int kBins = 10;
     constexpr int kDraws = 100'000;
-    std::array<int, kBins> counts = {};
+    std::array<std::uint64_t, kBins> counts = {};
     for (int i = 0; i < kDraws; ++i) {
         ++counts.at(random.below(kBins));
     }
-    double chi_squared = 0;
-    for (const int count : counts) {
-        const double off = count - kDraws / double{kBins};
-        chi_squared += off * off / (kDraws / double{kBins});
-    }
-    EXPECT_LT(chi_squared, 27.9);  // 9 degrees of freedom, p = 0.001
+    constexpr std::array<double, kBins> kSame = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    EXPECT_LT(testing::chi_squared_deviation(counts, kSame), 3.1);
 }
 
 TEST(LabelWeights, DrawByWeightAndNeverOutsideTheSet) {
@@ -84,6 +81,43 @@ TEST(LabelWeights, DrawByWeightAndNeverOutsideTheSet) {
     EXPECT_EQ(counts[3], 0);
     EXPECT_NEAR(counts[0], 10'000, 400);
     EXPECT_NEAR(counts[2], 30'000, 400);
+}
+
+// Over sets of any width, in words and without and with the groups; expectations of a count stay
+// above five, where chi-squared is good.
+TEST(LabelWeights, DrawIsUnbiasedByChiSquared) {
+    RandomStream random({11, 0, 0, 0});
+    double most = 0;
+    for (const std::size_t label_count : {2U, 5U, 63U, 64U, 65U, 128U, 200U, 300U}) {
+        for (const bool by_groups : {false, true}) {
+            std::vector<double> given(label_count);
+            LabelSet set(label_count);
+            for (std::size_t label = 0; label < label_count; ++label) {
+                given[label] = 1 + random.below(50);
+                if (random.below(3) > 0 || label < 2) {
+                    set.insert(static_cast<Label>(label));
+                }
+            }
+            LabelWeights weights(given);
+            if (by_groups) {
+                weights.add_up_groups();
+            }
+            std::vector<double> wanted = given;
+            for (std::size_t label = 0; label < label_count; ++label) {
+                if (!set.contains(static_cast<Label>(label))) {
+                    wanted[label] = 0;
+                }
+            }
+            std::vector<std::uint64_t> counts(label_count);
+            for (int i = 0; i < 200'000; ++i) {
+                ++counts[weights.draw(set.words(), random)];
+            }
+            const double deviation = testing::chi_squared_deviation(counts, wanted);
+            EXPECT_LT(deviation, 3.7) << label_count;  // once in ten thousand times
+            most = std::max(most, std::abs(deviation));
+        }
+    }
+    EXPECT_GT(most, 0.1);  // counts that fit too well were not drawn
 }
 
 TEST(LabelWeights, EntropyOfEqualLabelsIsTheLogOfTheirNumber) {
