@@ -91,9 +91,8 @@ class Finder {
                 return model;
             }
         } else {
-            const std::size_t cells_max = preparation_.is_plain_model_rigid()
-                                              ? kWholeOrNothingCellsMax
-                                              : kWholeFirstCellsMax;
+            const std::size_t cells_max =
+                preparation_.is_plain_model_rigid() ? kWholeOrNothingCellsMax : kWholeFirstCellsMax;
             if (problem_.size.cell_count() <= cells_max) {
                 auto model = solve_whole(kWholeFirstAttempts, nullptr);
                 if (!model) {
