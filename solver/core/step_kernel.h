@@ -47,6 +47,12 @@ struct StepState {
 // Catalog::propagate() where every neighbour is a fixed step away: the loop that most of all time
 // is spent in. It looks at all neighbours of a site at once and keeps its state in registers.
 //
+// Sets of one word are looked at four at a time while the queue has as many. What a set allows is a
+// chain of loads that ends in a branch nobody can predict - which neighbours change -, and four
+// chains and one such branch take hardly longer than one of each. A site of the four may be changed
+// by another one: then it is in the queue again, and what was taken by its older, larger set was
+// right as far as it went. (Larger sets are looked up in loops of their own; there it costs.)
+//
 // One source serves every VectorLevel; the compiler makes of it what the level allows, so results
 // are the same.
 template <std::size_t kRelations, std::size_t kWords>
@@ -63,7 +69,10 @@ class StepKernel {
     static constexpr std::size_t kGroups = kWordBits / kGroupBits;  // of one word
     static constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
     static constexpr std::size_t kStride = Relations::stride_for(kRelations, kWords);
-    static constexpr std::size_t kStopInterval = 1024;
+    static constexpr std::size_t kStopInterval = 256;
+    static constexpr std::size_t kLanes = kWords == 1 ? 4 : 1;  // sites looked at together
+    static constexpr std::size_t kLaneBits = 8;                 // of the mask of changes, for each
+    static_assert(kRelations <= kLaneBits);
 
     using Vector [[gnu::vector_size(32), gnu::may_alias]] = Word;
 
@@ -159,26 +168,50 @@ class StepKernel {
         std::size_t trail = state.trail_length;
         std::vector<Site>* const changed = state.changed;
 
+        Site sites[kLanes] = {};
+        Support supports[kLanes];
+        const auto take = [&](std::size_t lane) __attribute__((always_inline)) {
+            sites[lane] = queue[head];
+            head = head + 1 < queue_size ? head + 1 : 0;
+            --length;
+            queued[sites[lane]] = 0;
+        };
+        const auto look = [&](std::size_t lane) __attribute__((always_inline)) {
+            const Word* const own = sets + sites[lane] * kWords;
+            collect(own, unions, supports[lane]);
+            const unsigned found = find_unsupported(own, steps, supports[lane]) & arcs[sites[lane]];
+            return found << (lane * kLaneBits);
+        };
+
         Propagation result = Propagation::kConsistent;
-        std::size_t looked_at = 0;
+        std::size_t rounds = 0;
         while (length > 0 && result == Propagation::kConsistent) {
-            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
+            if (++rounds % kStopInterval == 0 && stop.stop_requested()) {
                 result = Propagation::kStopped;
                 break;
             }
-            const Site site = queue[head];
-            head = head + 1 < queue_size ? head + 1 : 0;
-            --length;
-            queued[site] = 0;
-            Word* const own = sets + site * kWords;
-            Support support;
-            collect(own, unions, support);
-            unsigned left = find_unsupported(own, steps, support) & arcs[site];
+            unsigned left = 0;
+            if (length >= kLanes) {
+#pragma GCC unroll 4
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    take(lane);
+                }
+#pragma GCC unroll 4
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    left |= look(lane);
+                }
+            } else {
+                take(0);
+                left = look(0);
+            }
             for (; left != 0; left &= left - 1) {
-                const auto relation = static_cast<std::size_t>(std::countr_zero(left));
+                const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+                const std::size_t lane = bit / kLaneBits;
+                const std::size_t relation = bit % kLaneBits;
                 const auto neighbour =
-                    static_cast<Site>(static_cast<std::int64_t>(site) + steps[relation]);
+                    static_cast<Site>(static_cast<std::int64_t>(sites[lane]) + steps[relation]);
                 Word* const set = sets + neighbour * kWords;
+                const Word* const allowed = supports[lane].words + relation * kWords;
                 if (changed != nullptr) {
                     changed->push_back(neighbour);
                 }
@@ -190,14 +223,18 @@ class StepKernel {
                 trail += static_cast<std::size_t>(is_saving & (saved[neighbour] != stamp));
                 saved[neighbour] = stamp;
                 Word any = 0;
+                Word removed = 0;
                 for (std::size_t word = 0; word < kWords; ++word) {
-                    set[word] &= support.words[relation * kWords + word];
+                    removed |= set[word] & ~allowed[word];
+                    set[word] &= allowed[word];
                     any |= set[word];
                 }
+                // Another of the four may have been first.
+                const auto is_new = static_cast<std::uint8_t>(removed != 0);
                 const std::size_t end = head + length;
                 queue[end < queue_size ? end : end - queue_size] = neighbour;
-                length += static_cast<std::size_t>(queued[neighbour] == 0);
-                queued[neighbour] = 1;
+                length += static_cast<std::size_t>(queued[neighbour] == 0) & is_new;
+                queued[neighbour] |= is_new;
                 if (any == 0) [[unlikely]] {
                     state.emptied = neighbour;
                     result = Propagation::kContradiction;
