@@ -91,10 +91,14 @@ class Finder {
                 return model;
             }
         } else {
-            const std::size_t cells_max =
-                preparation_.is_plain_model_rigid() ? kWholeOrNothingCellsMax : kWholeFirstCellsMax;
-            if (problem_.size.cell_count() <= cells_max) {
-                auto model = solve_whole(kWholeFirstAttempts, nullptr);
+            const bool is_rigid = preparation_.is_plain_model_rigid();
+            if (problem_.size.cell_count() <=
+                (is_rigid ? kWholeOrNothingCellsMax : kWholeFirstCellsMax)) {
+                // What column after column settles into, such as streets that all run one way,
+                // blocks cannot get out of where they need pieces around them that fit.
+                auto model = solve_whole(
+                    kWholeFirstAttempts, nullptr, is_rigid ? Order::kRandom : Order::kScan
+                );
                 if (!model) {
                     return tl::unexpected(std::move(model.error()));
                 }
@@ -180,7 +184,7 @@ class Finder {
 
     // Nothing when no attempt succeeded.
     Result<std::optional<InitialModel>> solve_whole(
-        std::uint32_t attempts, ConstraintBoard* board
+        std::uint32_t attempts, ConstraintBoard* board, Order order = Order::kScan
     ) {
         InitialModel model = {std::vector<Label>(problem_.size.cell_count(), kNoLabel), true};
         if (board != nullptr) {
@@ -190,7 +194,7 @@ class Finder {
         const BlockResult result = search_.modify(
             Box::whole(problem_.size),
             std::span<Label>(model.labels),
-            {attempts, Order::kScan, board, std::nullopt, nullptr, dead_ends_},
+            {attempts, order, board, std::nullopt, nullptr, dead_ends_},
             {seed_, kWholeKey, 0, 0},
             stop_
         );
