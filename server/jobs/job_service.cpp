@@ -227,11 +227,15 @@ Parsed<Job> JobService::find_with_model(
         return find_finished(id);
     }
     auto job = find(id);
-    if (!job || has_expired(*job) || jobs_.artifact(id, labels_artifact(*alternative))) {
-        return job && has_expired(*job) ? find_finished(id) : job;
+    if (!job) {
+        return job;
     }
-    const std::uint32_t wanted = proto::alternatives_of_request(job->request);
-    if (*alternative < wanted && job->state != JobState::kSucceeded) {
+    const bool is_never_made = job->state == JobState::kSucceeded ||
+                               *alternative >= proto::alternatives_of_request(job->request);
+    if (!has_expired(*job) && jobs_.artifact(id, labels_artifact(*alternative))) {
+        return job;
+    }
+    if (has_expired(*job) || !is_never_made) {
         return find_finished(id);  // tells why it is not there
     }
     return tl::unexpected(

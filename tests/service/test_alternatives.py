@@ -366,6 +366,17 @@ def test_a_deadline_leaves_what_was_made(server):
         assert server.get(f"/v1/jobs/{job['id']}/labels.json?alternative={k}").status == 200
 
 
+def test_an_expired_alternative_is_gone(make_server):
+    server = make_server("--retention-hours", "0.001")  # 3.6 seconds
+    job = make(server, {**HILLS_REQUEST, "alternatives": 2})
+    url = f"/v1/jobs/{job['id']}/model.glb?alternative=1"
+    assert server.get(url).status == 200
+    wait_until(lambda: server.get(url).status == 410, timeout=10)
+    for what in ("model.glb", "labels.json"):
+        answer = server.get(f"/v1/jobs/{job['id']}/{what}?alternative=1")
+        assert_problem(answer, 410, "expired")
+
+
 # --- starting from one
 
 
