@@ -38,6 +38,10 @@ LONG_SERIES = {"example": YARD, "size": (60, 6, 60), "alternatives": 3, "paramet
     "weights": "uniform", "blocks": {"size": [20, 6, 20], "overlap": 0.75,
                                      "passes": max(2, STEADY_PASSES // 3)}}}
 
+# The same with few blocks that take long, so that whoever reads the frames is there for each.
+SLOW_SERIES = {**LONG_SERIES, "size": (120, 10, 120), "parameters": {
+    "weights": "uniform", "blocks": {"size": [60, 10, 60], "overlap": 0, "passes": 3}}}
+
 
 def post(server, request):
     return server.request("POST", "/v1/jobs", request, headers={"Prefer": "wait=60"})
@@ -253,15 +257,17 @@ def models_of(messages, size):
             if newest[model] >= last_blocks[model]}
 
 
-def test_label_frames_give_each_model_anew(server):
+@pytest.mark.parametrize("request_", [LONG_SERIES, SLOW_SERIES],
+                         ids=["a client behind", "a client that keeps up"])
+def test_label_frames_give_each_model_anew(server, request_):
     with endless_job(server), endless_job(server):  # no worker is free before the client is there
-        job = submit(server, LONG_SERIES)
+        job = submit(server, request_)
         client = connect(server, job, partial="labels")
     with client:
         messages = client.messages()
     check_order(messages)
     wanted = {k: labels_of(server, job, k)["cells"] for k in range(3)}
-    models = models_of(messages, LONG_SERIES["size"])
+    models = models_of(messages, request_["size"])
     assert 2 in models
     assert models == {k: wanted[k] for k in models}
 
