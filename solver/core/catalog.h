@@ -48,7 +48,7 @@ class Catalog {
           queue_(topology.site_count() + 1),
           queued_(topology.site_count()),
           saved_(topology.site_count()),
-          support_(relations.stride()) {
+          support_(words_) {
         if constexpr (kWords == 0) {
             allowed_lists_.emplace(relations);
             seen_.resize(topology.site_count() * words_);
@@ -266,10 +266,9 @@ class Catalog {
             if (find_few_removed(site)) {
                 consistent = follow_removed(site);
             } else {
-                collect_support(site);
+                find_rows(site);
                 topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
-                    consistent =
-                        consistent && narrow(neighbour, support_.data() + relation * words());
+                    consistent = consistent && narrow(neighbour, support_along(relation));
                 });
             }
             if (!consistent) {
@@ -309,7 +308,7 @@ class Catalog {
             }
             return is_known &&
                    count_labels(removed_) * allowed_lists_->pairs_per_label() * kWordsPerPair <
-                       count_nibbles(labels(site)) * support_.size();
+                       count_nibbles(labels(site)) * relations_.stride();
         }
     }
 
@@ -362,20 +361,30 @@ class Catalog {
         return false;
     }
 
-    // support_[r] = the labels that some label left at the site allows along relation r.
-    void collect_support(Site site) {
-        std::fill(support_.begin(), support_.end(), Word{0});
+    // The rows of what is left at the site. A site of many kinds of arcs has only a few of them, so
+    // rows are added up arc by arc.
+    void find_rows(Site site) {
+        rows_.clear();
         const auto add = [&](std::size_t group, std::size_t members) {
-            const Word* rows = relations_.union_data(group, members);
-            for (std::size_t word = 0; word < support_.size(); ++word) {
-                support_.data()[word] |= rows[word];
-            }
+            rows_.push_back(relations_.union_data(group, members));
         };
         if (relations_.group_bits() == 8) {
             for_each_group<8>(labels(site), add);
         } else {
             for_each_group<4>(labels(site), add);
         }
+    }
+
+    // The labels that some label left at that site allows along the relation.
+    const Word* support_along(RelationId relation) {
+        std::fill(support_.begin(), support_.end(), Word{0});
+        const std::size_t first = relation * words();
+        for (const Word* row : rows_) {
+            for (std::size_t word = 0; word < words(); ++word) {
+                support_.data()[word] |= row[first + word];
+            }
+        }
+        return support_.data();
     }
 
     void reserve_trail(std::size_t length) {
@@ -458,7 +467,8 @@ class Catalog {
     std::vector<std::uint64_t> saved_;  // the stamp under which the site is on the trail
     std::uint64_t stamp_ = 0;
     std::size_t marks_ = 0;
-    std::vector<Word> support_;
+    std::vector<Word> support_;      // along one relation
+    std::vector<const Word*> rows_;  // of one site's labels
     // For sets of any width, which may be large; see find_few_removed().
     std::optional<AllowedLists> allowed_lists_;
     std::vector<Word> seen_;

@@ -10,7 +10,7 @@ namespace modelsynth {
 Relations::Relations(std::size_t label_count, std::vector<RelationId> reverse)
     : label_count_(label_count),
       words_(words_for(label_count)),
-      group_bits_(group_bits_for(words_)),
+      group_bits_(group_bits_for(words_, reverse.size())),
       reverse_(std::move(reverse)),
       stride_(stride_for(reverse_.size(), words_)) {
     check(label_count <= kLabelCountMax, "more labels than a label number can hold");

@@ -28,7 +28,9 @@ using RelationId = std::uint16_t;
 class Relations {
   public:
     // Groups are bytes as long as their table fits the caches of a core, nibbles beyond.
-    static constexpr std::size_t group_bits_for(std::size_t words) { return words <= 2 ? 8 : 4; }
+    static constexpr std::size_t group_bits_for(std::size_t words, std::size_t relation_count) {
+        return words <= 2 && relation_count <= 8 ? 8 : 4;
+    }
 
     static constexpr std::size_t stride_for(std::size_t relation_count, std::size_t words) {
         return (relation_count * words + kVectorWords - 1) / kVectorWords * kVectorWords;

@@ -65,7 +65,7 @@ class StepKernel {
     }
 
   private:
-    static constexpr std::size_t kGroupBits = Relations::group_bits_for(kWords);
+    static constexpr std::size_t kGroupBits = Relations::group_bits_for(kWords, kRelations);
     static constexpr std::size_t kGroups = kWordBits / kGroupBits;  // of one word
     static constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
     static constexpr std::size_t kStride = Relations::stride_for(kRelations, kWords);

@@ -1,11 +1,13 @@
 // Writes each built-in example to files to look at: NAME.glb (the example), NAME.pieces.glb (its
-// kit as a sheet) and, when a size is given, NAME.SEED.glb (a synthesis), with a count of labels.
+// kit as a sheet, where it has one) and, when a size is given, NAME.SEED.glb (a synthesis), with a
+// count of labels. Sizes are in cells or, for examples made of solids, metres.
 //
 //   modelsynth-examples DIR [NAME [XxYxZ [SEEDS]]]
 
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
 #include "solver/examples/built_in.h"
+#include "solver/examples/make_solids.h"
 #include "solver/mesh/glb_writer.h"
 
 #include <cstdio>
@@ -137,5 +139,11 @@ int main(int argc, char** argv) {
             }
         }
     }
+    modelsynth::examples::show_solids(
+        directory,
+        argc > 2 ? argv[2] : "",
+        argc > 3 ? argv[3] : "",
+        argc > 4 ? std::atoi(argv[4]) : 1
+    );
     return 0;
 }

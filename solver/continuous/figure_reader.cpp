@@ -1,0 +1,288 @@
+#include "solver/continuous/figures.h"
+#include "solver/continuous/solids.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace modelsynth::continuous {
+
+namespace {
+
+constexpr std::size_t kGround = std::numeric_limits<std::size_t>::max();
+
+// A face of the example as the reader sees it: its plane, and where it reaches.
+struct Patch {
+    std::size_t solid = kGround;  // kGround: the ground's top, which has no end
+    std::size_t face = 0;
+    std::size_t family = 0;
+    double offset = 0;
+    Point min = Point::Constant(-std::numeric_limits<double>::infinity());
+    Point max = Point::Constant(std::numeric_limits<double>::infinity());
+};
+
+class Reader {
+  public:
+    Reader(const Example& example, const Families& families, const Topes& topes)
+        : example_(example),
+          topes_(topes),
+          solids_(example),
+          extent_(extent_of(example)),
+          tolerance_(extent_ * 1e-6) {
+        for (std::size_t s = 0; s < example.polyhedra.size(); ++s) {
+            const Polyhedron& solid = example.polyhedra[s];
+            for (std::size_t f = 0; f < solid.faces.size(); ++f) {
+                const FacePlane& plane = families.planes[s][f];
+                if (plane.family == kNoFamily) {
+                    continue;
+                }
+                Patch patch = {s, f, plane.family, plane.offset};
+                patch.min = solid.corners[solid.faces[f].front()];
+                patch.max = patch.min;
+                for (const std::uint32_t corner : solid.faces[f]) {
+                    patch.min = patch.min.cwiseMin(solid.corners[corner]);
+                    patch.max = patch.max.cwiseMax(solid.corners[corner]);
+                }
+                patches_.push_back(patch);
+            }
+        }
+        if (example.ground) {
+            Patch ground;
+            for (std::size_t family = 0; family < topes.family_count(); ++family) {
+                if (topes.normals()[family].y() > 1 - kNormalTolerance) {
+                    ground.family = family;
+                }
+            }
+            patches_.push_back(ground);
+        }
+    }
+
+    Result<std::vector<Figure>> read() {
+        read_corners();
+        read_edges();
+        read_faces();
+        if (!faults_.empty()) {
+            return tl::unexpected(Error{
+                ErrorCode::kInvalidArgument,
+                "it cannot be told what the example has where",
+                std::move(faults_)});
+        }
+        figures_.push_back(uniform_figure(topes_, kEmpty));
+        return std::move(figures_);
+    }
+
+  private:
+    [[nodiscard]] bool is_in_bounds(const Point& point) const {
+        return !example_.bounds ||
+               ((point.array() > example_.bounds->min.array() + tolerance_).all() &&
+                (point.array() < example_.bounds->max.array() - tolerance_).all());
+    }
+
+    [[nodiscard]] bool overlap(const Patch& a, const Patch& b) const {
+        return (a.min.array() <= b.max.array() + tolerance_).all() &&
+               (b.min.array() <= a.max.array() + tolerance_).all();
+    }
+
+    [[nodiscard]] double distance(const Patch& patch, const Point& point) const {
+        return patch.solid == kGround ? std::abs(point.y())
+                                      : solids_.distance(patch.solid, patch.face, point);
+    }
+
+    // Points that three faces have in common.
+    void read_corners() {
+        std::vector<std::size_t> near;
+        for (std::size_t a = 0; a < patches_.size(); ++a) {
+            near.clear();
+            for (std::size_t b = a + 1; b < patches_.size(); ++b) {
+                if (patches_[a].family != patches_[b].family && overlap(patches_[a], patches_[b])) {
+                    near.push_back(b);
+                }
+            }
+            for (std::size_t i = 0; i < near.size(); ++i) {
+                const Patch& second = patches_[near[i]];
+                const FamilySet line =
+                    topes_.lines()[topes_.line_of(patches_[a].family, second.family)].families;
+                for (std::size_t j = i + 1; j < near.size(); ++j) {
+                    const Patch& third = patches_[near[j]];
+                    if ((line >> third.family & 1) == 0 && overlap(second, third)) {
+                        read_common_point(patches_[a], second, third);
+                    }
+                }
+            }
+        }
+    }
+
+    void read_common_point(const Patch& a, const Patch& b, const Patch& c) {
+        Eigen::Matrix3d normals;
+        normals.row(0) = topes_.normals()[a.family];
+        normals.row(1) = topes_.normals()[b.family];
+        normals.row(2) = topes_.normals()[c.family];
+        const Point point = normals.inverse() * Point(a.offset, b.offset, c.offset);
+        if (!is_in_bounds(point) || distance(a, point) > tolerance_ ||
+            distance(b, point) > tolerance_ || distance(c, point) > tolerance_) {
+            return;
+        }
+        std::array<std::int64_t, 3> place = {};
+        for (int axis = 0; axis < 3; ++axis) {
+            place[static_cast<std::size_t>(axis)] = std::llround(point[axis] / (8 * tolerance_));
+        }
+        if (places_.insert(place).second) {
+            corners_.push_back(point);
+            read_figure(point, a);
+        }
+    }
+
+    // Between any two of those points that follow each other on an edge, and before and after them.
+    void read_edges() {
+        for (const Polyhedron& solid : example_.polyhedra) {
+            std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+            for (const Face& face : solid.faces) {
+                for (std::size_t i = 0; i < face.size(); ++i) {
+                    edges.insert(std::minmax(face[i], face[(i + 1) % face.size()]));
+                }
+            }
+            for (const auto& [a, b] : edges) {
+                read_edge(solid.corners[a], solid.corners[b]);
+            }
+        }
+    }
+
+    void read_edge(const Point& a, const Point& b) {
+        const auto part = inside_bounds(a, b);
+        if (!part) {
+            return;
+        }
+        const Point along = b - a;
+        std::vector<double> stops = {part->first, part->second};
+        for (const Point& corner : corners_) {
+            const double t = (corner - a).dot(along) / along.squaredNorm();
+            if (t > part->first && t < part->second &&
+                (a + t * along - corner).norm() <= tolerance_) {
+                stops.push_back(t);
+            }
+        }
+        std::sort(stops.begin(), stops.end());
+        for (std::size_t i = 1; i < stops.size(); ++i) {
+            if ((stops[i] - stops[i - 1]) * along.norm() > 16 * tolerance_) {
+                const Point middle = a + (stops[i] + stops[i - 1]) / 2 * along;
+                if (is_in_bounds(middle)) {
+                    read_figure(middle, patches_.front());
+                }
+            }
+        }
+    }
+
+    // The part of the segment inside the bounds, as shares of it.
+    [[nodiscard]] std::optional<std::pair<double, double>> inside_bounds(
+        const Point& a, const Point& b
+    ) const {
+        double from = 0;
+        double to = 1;
+        for (int axis = 0; example_.bounds && axis < 3; ++axis) {
+            const double step = b[axis] - a[axis];
+            const double low = example_.bounds->min[axis] - a[axis];
+            const double high = example_.bounds->max[axis] - a[axis];
+            if (std::abs(step) < tolerance_) {
+                if (low >= 0 || high <= 0) {
+                    return std::nullopt;
+                }
+                continue;
+            }
+            from = std::max(from, std::min(low / step, high / step));
+            to = std::min(to, std::max(low / step, high / step));
+        }
+        return from < to ? std::optional(std::pair(from, to)) : std::nullopt;
+    }
+
+    // The middle of every face, as far as it is in the bounds: of faces whose edges all lie outside
+    // nothing else tells.
+    void read_faces() {
+        for (const Patch& patch : patches_) {
+            Point low = patch.min;
+            Point high = patch.max;
+            if (example_.bounds) {
+                low = low.cwiseMax(example_.bounds->min);
+                high = high.cwiseMin(example_.bounds->max);
+            }
+            Point middle = (low + high) / 2;
+            if (!middle.allFinite()) {
+                continue;  // the ground, which is told by whatever stands on it
+            }
+            const Point& normal = topes_.normals()[patch.family];
+            middle += normal * (patch.offset - normal.dot(middle));
+            if (is_in_bounds(middle) && distance(patch, middle) <= tolerance_) {
+                read_figure(middle, patch);
+            }
+        }
+    }
+
+    // `patch`: to name the place in a fault.
+    void read_figure(const Point& point, const Patch& patch) {
+        FamilySet here = 0;
+        double nearest = extent_;
+        for (const Patch& other : patches_) {
+            const double away = distance(other, point);
+            if (away <= 4 * tolerance_) {
+                here |= FamilySet{1} << other.family;
+            } else {
+                nearest = std::min(nearest, away);
+            }
+        }
+        if (example_.bounds) {  // faces beyond are not known
+            nearest = std::min(
+                {nearest,
+                 (point - example_.bounds->min).minCoeff(),
+                 (example_.bounds->max - point).minCoeff()}
+            );
+        }
+        const double reach = nearest / 4;
+        std::map<FamilySet, char> known;
+        Figure figure(topes_.count(), '\0');
+        for (std::size_t t = 0; t < topes_.count(); ++t) {
+            const auto tope = static_cast<Tope>(t);
+            const auto [at, is_new] = known.try_emplace(topes_.sides(tope) & here, '\0');
+            if (is_new) {
+                const Point sample = point + reach * topes_.inside(tope);
+                at->second = static_cast<char>(solids_.at(sample));
+            }
+            figure[t] = at->second;
+        }
+        if (reach < 4 * tolerance_ && patch.solid != kGround) {
+            faults_.push_back(
+                {"/polyhedra/" + std::to_string(patch.solid) + "/faces/" +
+                     std::to_string(patch.face),
+                 "another face comes nearer than can be told apart"}
+            );
+        }
+        figures_.push_back(std::move(figure));
+    }
+
+    const Example& example_;
+    const Topes& topes_;
+    Solids solids_;
+    double extent_;
+    double tolerance_;
+    std::vector<Patch> patches_;
+    std::set<std::array<std::int64_t, 3>> places_;
+    std::vector<Point> corners_;
+    std::vector<Figure> figures_;
+    std::vector<Fault> faults_;
+};
+
+}  // namespace
+
+Result<std::vector<Figure>> read_figures(
+    const Example& example, const Families& families, const Topes& topes
+) {
+    return Reader(example, families, topes).read();
+}
+
+}  // namespace modelsynth::continuous

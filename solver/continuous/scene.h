@@ -1,0 +1,16 @@
+#pragma once
+
+#include "solver/continuous/reading.h"
+#include "solver/continuous/surface.h"
+#include "solver/mesh/scene.h"
+
+namespace modelsynth::continuous {
+
+// A surface to look at: one mesh with a part for each material, flat faces, texture coordinates in
+// metres along each face, upright where the face is. Frame: that of the model.
+[[nodiscard]] Scene make_scene(const ExampleReading& reading, const Surface& surface);
+
+// The example's solids as they were given, on a piece of ground when there is one.
+[[nodiscard]] Scene make_example_scene(const ExampleReading& reading);
+
+}  // namespace modelsynth::continuous

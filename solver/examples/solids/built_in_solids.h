@@ -1,0 +1,19 @@
+#pragma once
+
+#include "solver/continuous/reading.h"
+
+#include <memory>
+#include <vector>
+
+namespace modelsynth::examples {
+
+// The built-in examples of continuous model synthesis, read on first use and kept. Their names are
+// their ids. Thread-safe.
+[[nodiscard]] const std::vector<std::shared_ptr<const continuous::ExampleReading>>& built_in_solids(
+);
+
+// Each of them, made anew.
+[[nodiscard]] continuous::Example make_houses();
+[[nodiscard]] continuous::Example make_skyscrapers();
+
+}  // namespace modelsynth::examples

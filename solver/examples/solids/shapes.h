@@ -1,0 +1,48 @@
+#pragma once
+
+#include "solver/continuous/example.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace modelsynth::examples {
+
+// A closed outline in a plane, counter-clockwise.
+using Outline = std::vector<std::array<double, 2>>;
+
+// The vocabulary of the examples made of solids. Metres, y up.
+
+[[nodiscard]] continuous::Polyhedron box(
+    continuous::ObjectId object, const continuous::Point& min, const continuous::Point& max
+);
+
+// An outline in x and y, seen from the south, that goes on from z0 to z1, ...
+[[nodiscard]] continuous::Polyhedron prism_along_z(
+    continuous::ObjectId object, const Outline& outline, double z0, double z1
+);
+
+// ... one in z and y, seen from the west, from x0 to x1, ...
+[[nodiscard]] continuous::Polyhedron prism_along_x(
+    continuous::ObjectId object, const Outline& outline, double x0, double x1
+);
+
+// ... and a plan in x and -z, seen from above, from y0 up to y1.
+[[nodiscard]] continuous::Polyhedron prism_upwards(
+    continuous::ObjectId object, const Outline& outline, double y0, double y1
+);
+
+// A pyramid over such a plan.
+[[nodiscard]] continuous::Polyhedron pyramid(
+    continuous::ObjectId object, const Outline& outline, double y0, const continuous::Point& apex
+);
+
+// The same solid elsewhere.
+[[nodiscard]] continuous::Polyhedron moved(
+    continuous::Polyhedron solid, const continuous::Point& by
+);
+
+// A linear colour from the usual notation 0xRRGGBB.
+[[nodiscard]] Color color(std::uint32_t srgb);
+
+}  // namespace modelsynth::examples
