@@ -1,5 +1,6 @@
 #include "proto/analysis_codec.h"
 
+#include "proto/continuous_codec.h"
 #include "proto/json.h"
 #include "solver/discrete/analysis/success_drawing.h"
 
@@ -169,9 +170,35 @@ const discrete::Example& discrete_of(const Example& example) {
     return *std::get<std::shared_ptr<const discrete::Example>>(example);
 }
 
+OrderedJson write(const continuous::Analysis& analysis, const std::string& self) {
+    OrderedJson families = OrderedJson::array();
+    for (const continuous::Analysis::Family& family : analysis.families) {
+        families.push_back(
+            {{"name", "h" + std::to_string(families.size() + 1)},
+             {"normal", write_point(family.normal)},
+             {"spacing", family.spacing}}
+        );
+    }
+    OrderedJson warnings = OrderedJson::array();
+    for (const std::string& message : analysis.warnings) {
+        warnings.push_back({{"code", "planes"}, {"message", message}});
+    }
+    return {
+        {"verdict", "unknown"},
+        {"proof", nullptr},
+        {"labels", analysis.figures},
+        {"corner_labels", analysis.corner_figures},
+        {"families", std::move(families)},
+        {"warnings", std::move(warnings)},
+        {"urls", {{"self", self + "/analysis"}, {"example", self}}}};
+}
+
 }  // namespace
 
 std::string analysis_json(const Example& example, const std::string& id, const Analysis& analysis) {
+    if (const auto* solids = std::get_if<continuous::Analysis>(&analysis)) {
+        return dump(write(*solids, "/v1/examples/" + id));
+    }
     const auto& discrete = std::get<discrete::Analysis>(analysis);
     const Writer writer(discrete_of(example), discrete);
     const std::string self = "/v1/examples/" + id;
@@ -188,7 +215,10 @@ std::string analysis_json(const Example& example, const std::string& id, const A
          {{"self", self + "/analysis"}, {"example", self}, {"drawing", self + "/success.svg"}}}});
 }
 
-std::string success_drawing(const Example& example, const Analysis& analysis) {
+std::optional<std::string> success_drawing(const Example& example, const Analysis& analysis) {
+    if (!std::holds_alternative<discrete::Analysis>(analysis)) {
+        return std::nullopt;
+    }
     const std::array<discrete::SuccessCurve, 1> curves = {
         {{discrete_of(example).name, std::get<discrete::Analysis>(analysis).success}}};
     return discrete::draw_success_curves(curves);

@@ -2,6 +2,7 @@
 
 #include "solver/registry/task.h"
 
+#include <optional>
 #include <string>
 
 namespace modelsynth::proto {
@@ -20,7 +21,9 @@ namespace modelsynth::proto {
     const Example& example, const std::string& id, const Analysis& analysis
 );
 
-// The resource /v1/examples/{id}/success.svg.
-[[nodiscard]] std::string success_drawing(const Example& example, const Analysis& analysis);
+// The resource /v1/examples/{id}/success.svg; nothing where there is no such curve.
+[[nodiscard]] std::optional<std::string> success_drawing(
+    const Example& example, const Analysis& analysis
+);
 
 }  // namespace modelsynth::proto

@@ -1,5 +1,6 @@
 #include "proto/discrete_codec.h"
 
+#include "proto/blocks_codec.h"
 #include "proto/constraint_codec.h"
 
 #include <algorithm>
@@ -26,31 +27,6 @@ void read_size(const Value& value, const RequestLimits& limits, Parameters& para
             true
         );
     }
-}
-
-void read_blocks(const Value& value, const RequestLimits& limits, Parameters& parameters) {
-    if (value.json().is_null()) {
-        parameters.blocks = std::optional<discrete::Blocks>();
-        return;
-    }
-    discrete::Blocks blocks;
-    ObjectReader reader(value);
-    if (const auto size = reader.optional("size")) {
-        if (const auto cell = size->cell(1, limits.block_extent_max)) {
-            blocks.layout.size = {cell->x, cell->y, cell->z};
-        }
-    }
-    if (const auto overlap = reader.optional("overlap")) {
-        blocks.layout.overlap = overlap->number(0, 0.95).value_or(blocks.layout.overlap);
-    }
-    if (const auto passes = reader.optional("passes")) {
-        blocks.layout.passes = static_cast<std::uint32_t>(passes->integer(1, 100).value_or(1));
-    }
-    if (const auto attempts = reader.optional("attempts")) {
-        blocks.attempts = static_cast<std::uint32_t>(attempts->integer(1, 1000).value_or(1));
-    }
-    reader.finish();
-    parameters.blocks = blocks;
 }
 
 void read_weights(const Value& value, const RequestLimits& limits, Parameters& parameters) {
@@ -114,18 +90,6 @@ const char* order_name(const discrete::CellOrder& order) {
     return named->name;
 }
 
-OrderedJson write_blocks(const std::optional<discrete::Blocks>& blocks) {
-    if (!blocks) {
-        return nullptr;
-    }
-    const BlockLayout& layout = blocks->layout;
-    return {
-        {"size", OrderedJson::array({layout.size.x, layout.size.y, layout.size.z})},
-        {"overlap", layout.overlap},
-        {"passes", layout.passes},
-        {"attempts", blocks->attempts}};
-}
-
 OrderedJson write_weights(const discrete::Weights& weights) {
     if (const auto* rule = std::get_if<discrete::WeightRule>(&weights)) {
         return *rule == discrete::WeightRule::kUniform ? "uniform" : "example";
@@ -183,7 +147,7 @@ Parameters read_parameters(const Value& value, const RequestLimits& limits, Para
         read_size(*size, limits, parameters);
     }
     if (const auto blocks = reader.optional("blocks")) {
-        read_blocks(*blocks, limits, parameters);
+        parameters.blocks.emplace(read_blocks(*blocks, limits));
     }
     if (const auto boundary = reader.optional("boundary")) {
         ObjectReader sides(*boundary);

@@ -6,6 +6,7 @@
 #include "proto/limits.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
+#include "solver/registry/task.h"
 
 #include <optional>
 
@@ -26,8 +27,13 @@ namespace modelsynth::proto {
 );
 [[nodiscard]] OrderedJson write_side(const discrete::SideBoundary& side);
 
-// A whole example object.
+// A whole example object of kind "discrete".
 [[nodiscard]] std::optional<discrete::Example> read_example(
+    const Value& value, const RequestLimits& limits
+);
+
+// A whole example object of the kind that it says.
+[[nodiscard]] std::optional<Example> read_any_example(
     const Value& value, const RequestLimits& limits
 );
 

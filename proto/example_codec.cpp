@@ -1,6 +1,7 @@
 #include "proto/example_codec.h"
 
 #include "proto/base64.h"
+#include "proto/continuous_codec.h"
 #include "proto/discrete_codec.h"
 #include "proto/json.h"
 #include "solver/discrete/default_kit.h"
@@ -17,6 +18,7 @@ namespace modelsynth::proto {
 
 namespace {
 
+using continuous::ExampleReading;
 using discrete::Piece;
 
 using LabelOfName = std::unordered_map<std::string, Label>;
@@ -238,9 +240,7 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
     discrete::Example example;
     LabelOfName labels;
     ObjectReader reader(value);
-    if (const auto kind = reader.required("kind")) {
-        static_cast<void>(kind->one_of({"discrete"}));
-    }
+    static_cast<void>(reader.required("kind"));
     if (const auto name = reader.required("name")) {
         example.name = name->string(limits.name_characters_max).value_or("");
     }
@@ -300,27 +300,52 @@ std::optional<discrete::Example> read_example(const Value& value, const RequestL
     return example;
 }
 
+std::optional<Example> read_any_example(const Value& value, const RequestLimits& limits) {
+    const Json& json = value.json();
+    const bool has_kind = json.is_object() && json.contains("kind");
+    if (has_kind) {
+        const Value kind(json.at("kind"), value.pointer() + "/kind", value.faults());
+        const auto number = kind.one_of({"discrete", "continuous"});
+        if (!number) {
+            return std::nullopt;
+        }
+        if (*number == 1) {
+            auto solids = read_solids(value, limits);
+            return solids ? std::optional<Example>(std::move(solids)) : std::nullopt;
+        }
+    }
+    auto grid = read_example(value, limits);
+    return grid
+               ? std::optional<Example>(std::make_shared<const discrete::Example>(std::move(*grid)))
+               : std::nullopt;
+}
+
 Parsed<ExampleUpload> parse_example(std::string_view text, const RequestLimits& limits) {
     auto json = parse_json(text, limits.json);
     if (!json) {
         return tl::unexpected(std::move(json.error()));
     }
     Faults faults;
-    auto example = read_example(Value(*json, "", faults), limits);
+    auto example = read_any_example(Value(*json, "", faults), limits);
     if (!example) {
         Problem problem = make_problem("invalid-request", "the example cannot be used");
         problem.errors = faults.take();
         return tl::unexpected(std::move(problem));
     }
-    return ExampleUpload{
-        std::make_shared<const discrete::Example>(std::move(*example)), dump(*json)};
+    return ExampleUpload{std::move(*example), dump(*json)};
 }
 
 std::string example_summary(const Example& any, const std::string& id, bool built_in) {
+    if (const auto* solids = std::get_if<std::shared_ptr<const ExampleReading>>(&any)) {
+        return dump(solids_summary(**solids, id, built_in));
+    }
     return dump(summary(*std::get<std::shared_ptr<const discrete::Example>>(any), id, built_in));
 }
 
 std::string example_resource(const Example& any, const std::string& id, bool built_in) {
+    if (const auto* solids = std::get_if<std::shared_ptr<const ExampleReading>>(&any)) {
+        return dump(solids_resource(**solids, id, built_in));
+    }
     const auto& example = *std::get<std::shared_ptr<const discrete::Example>>(any);
     OrderedJson pieces = OrderedJson::array();
     for (const Piece& piece : example.pieces) {

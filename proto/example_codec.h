@@ -2,10 +2,8 @@
 
 #include "proto/limits.h"
 #include "proto/problem.h"
-#include "solver/discrete/example.h"
 #include "solver/registry/task.h"
 
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -13,11 +11,11 @@ namespace modelsynth::proto {
 
 // An example as it came over the wire.
 struct ExampleUpload {
-    std::shared_ptr<const discrete::Example> example;
+    Example example;
     std::string canonical;  // the JSON text with sorted keys: equal content, equal text
 };
 
-// Reads an example object, its meshes included, and checks all of it.
+// Reads an example object of any kind, its meshes included, and checks all of it.
 // Fails: malformed-json, invalid-request with every fault found.
 [[nodiscard]] Parsed<ExampleUpload> parse_example(
     std::string_view text, const RequestLimits& limits

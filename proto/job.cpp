@@ -42,7 +42,16 @@ OrderedJson from_schema(const OrderedJson& parameters) {
     return schema;
 }
 
-OrderedJson solver_document() {
+OrderedJson alternatives_schema() {
+    return {
+        {"description",
+         "So many different models of one request in one job, each with a result of its own."},
+        {"type", "integer"},
+        {"minimum", 1},
+        {"maximum", RequestLimits{}.alternatives_max}};
+}
+
+OrderedJson discrete_document() {
     const OrderedJson parameters = OrderedJson::parse(kDiscreteParametersSchema);
     return {
         {"name", "discrete"},
@@ -52,13 +61,20 @@ OrderedJson solver_document() {
          "(Merrell 2009, chapter 3)."},
         {"parameters", parameters},
         {"from", from_schema(parameters)},
-        {"alternatives",
-         {{"description",
-           "So many different models of one request in one job, each with a result of its own."},
-          {"type", "integer"},
-          {"minimum", 1},
-          {"maximum", RequestLimits{}.alternatives_max}}},
+        {"alternatives", alternatives_schema()},
         {"urls", {{"self", "/v1/solvers/discrete"}}}};
+}
+
+OrderedJson continuous_document() {
+    return {
+        {"name", "continuous"},
+        {"title", "Continuous model synthesis"},
+        {"description",
+         "Solids with faces of any slope: what stands around every corner, edge and face of the "
+         "model stands so in the example (Merrell 2009, chapter 4)."},
+        {"parameters", OrderedJson::parse(kContinuousParametersSchema)},
+        {"alternatives", alternatives_schema()},
+        {"urls", {{"self", "/v1/solvers/continuous"}}}};
 }
 
 }  // namespace
@@ -108,6 +124,9 @@ std::string to_json(const Job& job) {
           {"labels", self + "/labels.json"},
           {"cancel", self + "/cancel"}}},
         {"error", embed(job.error)}};
+    if (!solver_has_cells(job.solver)) {
+        document["urls"].erase("labels");
+    }
     if (job.queue_position) {
         document["queue"] = {{"position", *job.queue_position}};
     }
@@ -145,6 +164,9 @@ std::string to_json(const JobResult& result) {
     if (result.stats.objective) {
         stats["objective"] = *result.stats.objective;
     }
+    if (result.stats.polygons) {
+        stats["polygons"] = *result.stats.polygons;
+    }
     if (!result.stats.candidates.empty()) {
         OrderedJson candidates = OrderedJson::array();
         for (const auto& value : result.stats.candidates) {
@@ -160,7 +182,9 @@ std::string to_json(const JobResult& result) {
         query = "?alternative=" + std::to_string(result.place->alternative);
     }
     document["model"] = self + "/model.glb" + query;
-    document["labels"] = self + "/labels.json" + query;
+    if (result.has_cells) {
+        document["labels"] = self + "/labels.json" + query;
+    }
     document["bytes"] = result.bytes;
     document["sha256"] = result.sha256;
     document["size"] = OrderedJson::array({result.size.x, result.size.y, result.size.z});
@@ -181,8 +205,10 @@ std::string to_json(const std::vector<std::string>& alternatives) {
     document.erase("alternative");
     document.erase("seed");
     for (const char* name : {"model", "labels"}) {
-        const std::string url = document.at(name);
-        document[name] = url.substr(0, url.find('?'));
+        if (document.contains(name)) {
+            const std::string url = document.at(name);
+            document[name] = url.substr(0, url.find('?'));
+        }
     }
     document["alternatives"] = std::move(all);
     return dump(document);
@@ -332,9 +358,9 @@ std::string event_json(
 }
 
 std::string labels_json(const Example& example, const Model& model) {
+    const GridSize size = model.space->size();
     const OrderedJson head = {
-        {"size", OrderedJson::array({model.size.x, model.size.y, model.size.z})},
-        {"pieces", label_names(example)}};
+        {"size", OrderedJson::array({size.x, size.y, size.z})}, {"pieces", label_names(example)}};
     std::string text = dump(head);
     text.pop_back();
     text += ",\"cells\":[";
@@ -347,10 +373,14 @@ std::string labels_json(const Example& example, const Model& model) {
     return text + "]}";
 }
 
-std::string solver_list_json() { return list_json({dump(solver_document())}, std::nullopt); }
+std::string solver_list_json() {
+    return list_json({dump(discrete_document()), dump(continuous_document())}, std::nullopt);
+}
 
 std::string solver_json(std::string_view name) {
-    return name == "discrete" ? dump(solver_document()) : "";
+    return name == "discrete"     ? dump(discrete_document())
+           : name == "continuous" ? dump(continuous_document())
+                                  : "";
 }
 
 }  // namespace modelsynth::proto

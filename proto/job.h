@@ -58,6 +58,7 @@ struct JobResult {
     SynthesisStats stats;
     double solve_seconds = 0;
     GridSize size;
+    bool has_cells = true;                      // its labels stand in the cells of a grid
     std::optional<Place> place = std::nullopt;  // nothing: the job has this one alone
 };
 
@@ -112,6 +113,7 @@ struct CandidateEnd {
 );
 
 // {"size": [x, y, z], "pieces": [...], "cells": [...]}
+// Requires: a model on a grid.
 [[nodiscard]] std::string labels_json(const Example& example, const Model& model);
 
 // GET /v1/solvers and /v1/solvers/{name}; empty when there is no such solver.

@@ -1,10 +1,12 @@
 #include "proto/job_request.h"
 
+#include "proto/continuous_codec.h"
 #include "proto/discrete_codec.h"
 #include "proto/json.h"
 #include "proto/origin_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -48,8 +50,8 @@ void check_against_limits(
     Faults& faults
 ) {
     faults.add_all("/parameters", find_faults(example, parameters));
-    const auto& discrete = std::get<discrete::Parameters>(parameters);
-    const std::size_t cells = discrete.size->cell_count();
+    const GridSize size = model_size(parameters);
+    const std::size_t cells = size.cell_count();
     if (cells > limits.model_cells_max) {
         faults.add(
             "/parameters/size",
@@ -67,11 +69,11 @@ void check_against_limits(
             true
         );
     }
-    if (!*discrete.blocks) {
+    const auto layout = block_layout(parameters);
+    if (!layout) {
         return;
     }
-    const auto schedule =
-        schedule_blocks(*discrete.size, (*discrete.blocks)->layout, limits.blocks_max);
+    const auto schedule = schedule_blocks(size, *layout, limits.blocks_max);
     if (!schedule) {
         faults.add(
             "/parameters/blocks",
@@ -99,6 +101,8 @@ Problem refusal(std::vector<Fault> faults) {
     return problem;
 }
 
+constexpr std::array<const char*, 2> kSolvers = {"discrete", "continuous"};
+
 // One request on its way in: the fields in their order, then what they mean together.
 class RequestReader {
   public:
@@ -115,10 +119,7 @@ class RequestReader {
 
     Parsed<JobRequest> read(std::uint64_t seed_if_absent) {
         read_from();
-        if (const auto solver = required_or_inherited("solver")) {
-            static_cast<void>(solver->one_of({"discrete"}));
-        }
-        request_.solver = "discrete";
+        read_solver();
         read_example();
         read_seed(seed_if_absent);
         read_parameters();
@@ -145,6 +146,18 @@ class RequestReader {
     }
 
   private:
+    void read_solver() {
+        request_.solver = kSolvers[0];
+        const auto solver = required_or_inherited("solver");
+        const auto number = solver ? solver->one_of(kSolvers) : std::nullopt;
+        if (number) {
+            request_.solver = kSolvers[*number];
+        }
+        if (request_.from && request_.solver != kSolvers[0]) {
+            solver->fault("cannot start from a finished job");
+        }
+    }
+
     void read_from() {
         const auto from = fields_.optional("from");
         if (!from) {
@@ -210,12 +223,18 @@ class RequestReader {
             value.fault("must have the pieces of that job's example, in the same order");
             example_ = earlier_->task.example;  // what else is wrong is told by the right one
         }
+        if (example_ && solver_of(*example_) != request_.solver) {
+            value.fault(
+                "is an example for the solver \"" + std::string(solver_of(*example_)) + "\""
+            );
+            example_.reset();
+        }
         faults_.add_all("", faults.take());
     }
 
     void read_inline_example(const Value& value) {
-        if (auto example = proto::read_example(value, limits_)) {
-            example_ = std::make_shared<const discrete::Example>(std::move(*example));
+        if (auto example = read_any_example(value, limits_)) {
+            example_ = std::move(*example);
             written_example_ = OrderedJson::parse(dump(value.json()));
         }
     }
@@ -242,6 +261,12 @@ class RequestReader {
     }
 
     void read_parameters() {
+        if (request_.solver == kSolvers[1]) {
+            const auto given = fields_.optional("parameters");
+            solids_ =
+                given ? read_continuous_parameters(*given, limits_) : continuous::Parameters();
+            return;
+        }
         if (earlier_) {
             parameters_ = std::get<discrete::Parameters>(earlier_->task.parameters);
         }
@@ -314,7 +339,8 @@ class RequestReader {
             return;
         }
         request_.task.example = *example_;
-        request_.task.parameters = with_defaults(parameters_, *example_);
+        request_.task.parameters =
+            with_defaults(solids_ ? Parameters(*solids_) : Parameters(parameters_), *example_);
         check_against_limits(
             *example_, request_.task.parameters, request_.alternatives.value_or(1), limits_, faults_
         );
@@ -333,8 +359,10 @@ class RequestReader {
         if (request_.from) {
             echo["from"] = write_origin(*request_.from);
         }
-        echo["parameters"] =
-            write_parameters(std::get<discrete::Parameters>(request_.task.parameters));
+        echo["parameters"] = std::visit(
+            [](const auto& parameters) { return write_parameters(parameters); },
+            request_.task.parameters
+        );
         if (request_.alternatives) {
             echo["alternatives"] = *request_.alternatives;
         }
@@ -357,6 +385,7 @@ class RequestReader {
     std::optional<Example> example_;
     OrderedJson written_example_;  // as the echo tells it
     discrete::Parameters parameters_;
+    std::optional<continuous::Parameters> solids_;  // when the solver is the continuous one
     bool size_is_usable_ = true;
     OrderedJson tags_ = OrderedJson::object();
 };

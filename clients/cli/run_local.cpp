@@ -9,7 +9,7 @@
 #include "clients/cli/run_report.h"
 #include "proto/job_request.h"
 #include "proto/problem.h"
-#include "solver/examples/built_in.h"
+#include "solver/examples/all.h"
 #include "solver/mesh/glb_writer.h"
 #include "solver/registry/alternatives.h"
 #include "solver/registry/task.h"
@@ -32,14 +32,7 @@ Failure failure_of(const proto::Problem& problem) {
     return failure_of_problem(proto::to_json(problem));
 }
 
-std::optional<Example> find_built_in(const std::string& id) {
-    for (const auto& example : examples::built_in()) {
-        if (example->name == id) {
-            return example;
-        }
-    }
-    return std::nullopt;
-}
+std::optional<Example> find_built_in(const std::string& id) { return examples::find(id); }
 
 // Jobs are on servers.
 proto::Parsed<proto::JobRequest> find_no_job(
@@ -165,7 +158,7 @@ class LocalRun {
     }
 
     [[nodiscard]] Result<Made> draw(const Model& model) const {
-        const Scene scene = make_scene(request_.task.example, model, Box::whole(model.size));
+        const Scene scene = whole_scene(model);
         GlbOptions wanted;
         wanted.profile = profile_of(options_.profile);
         return write_glb(scene, wanted).and_then([&](std::string glb) -> Result<Made> {

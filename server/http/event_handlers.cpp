@@ -80,6 +80,12 @@ std::optional<Response> check_handshake(const Call& call) {
     return std::nullopt;
 }
 
+// Whether the labels of the job's model stand in the cells of a grid.
+bool has_cells(const Call& call) {
+    const auto job = call.service.find(call.id);
+    return !job || solver_has_cells(job->solver);
+}
+
 }  // namespace
 
 Response get_events(const Call& call) {
@@ -119,6 +125,12 @@ Response get_stream(const Call& call) {
     if (name != "none" && name != "labels" && name != "glb") {
         return refuse(
             call, make_problem("invalid-request", "\"partial\" must be none, labels or glb")
+        );
+    }
+    if (name == "labels" && !has_cells(call)) {
+        return refuse(
+            call,
+            make_problem("invalid-request", "the job's model has no cells; \"partial\" may be glb")
         );
     }
     Response response;

@@ -92,7 +92,11 @@ Response get_example_pieces(const Call& call) {
     if (!entry) {
         return no_example(call);
     }
-    return example_glb(call, pieces_scene(entry->example), true, ".pieces.glb");
+    const auto pieces = pieces_scene(entry->example);
+    if (!pieces) {
+        return refuse(call, make_problem("not-found", "an example made of solids has no pieces"));
+    }
+    return example_glb(call, *pieces, true, ".pieces.glb");
 }
 
 Response get_example_analysis(const Call& call) {
@@ -102,11 +106,14 @@ Response get_example_analysis(const Call& call) {
 }
 
 Response get_example_success(const Call& call) {
-    return with_analysis(call, [](const auto& entry, const Analysis& analysis) -> Response {
-        return {
-            200,
-            {{"Content-Type", "image/svg+xml"}},
-            proto::success_drawing(entry.example, analysis)};
+    return with_analysis(call, [&call](const auto& entry, const Analysis& analysis) -> Response {
+        auto drawing = proto::success_drawing(entry.example, analysis);
+        if (!drawing) {
+            return refuse(
+                call, make_problem("not-found", "how often such examples succeed is not measured")
+            );
+        }
+        return {200, {{"Content-Type", "image/svg+xml"}}, std::move(*drawing)};
     });
 }
 

@@ -2,7 +2,7 @@
 
 #include "proto/example_codec.h"
 #include "server/jobs/store_problem.h"
-#include "solver/examples/built_in.h"
+#include "solver/examples/all.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,12 +12,9 @@ namespace modelsynth::server {
 namespace {
 
 std::optional<ExampleLibrary::Entry> find_built_in(const std::string& id) {
-    for (const auto& example : examples::built_in()) {
-        if (example->name == id) {
-            return ExampleLibrary::Entry{id, true, example};
-        }
-    }
-    return std::nullopt;
+    auto example = examples::find(id);
+    return example ? std::optional(ExampleLibrary::Entry{id, true, std::move(*example)})
+                   : std::nullopt;
 }
 
 }  // namespace
@@ -67,8 +64,8 @@ std::optional<Example> ExampleLibrary::load(const std::string& digest) {
 
 proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list() {
     std::vector<Entry> entries;
-    for (const auto& example : examples::built_in()) {
-        entries.push_back({example->name, true, example});
+    for (const Example& example : examples::all()) {
+        entries.push_back({std::string(name_of(example)), true, example});
     }
     const auto rows = store_.list_examples();
     if (!rows) {
@@ -93,7 +90,8 @@ proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view tex
     }
     const std::string& digest = (*pin)->digest();
     Entry entry = {id_of(digest), false, upload->example, digest};
-    const auto kept = store_.add_example({entry.id, upload->example->name, digest}, uploads_max_);
+    const auto kept =
+        store_.add_example({entry.id, std::string(name_of(upload->example)), digest}, uploads_max_);
     if (!kept) {
         if (kept.error().code == StoreErrorCode::kQueueFull) {
             return tl::unexpected(proto::make_problem("too-large", kept.error().message));

@@ -302,11 +302,14 @@ Parsed<JobService::LoadedModel> JobService::load_model(
         return tl::unexpected(std::move(request.error()));
     }
     auto labels = proto::decode_labels(*encoded_labels);
-    const GridSize size = model_size(request->task.parameters);
-    if (!labels || labels->size() != size.cell_count()) {
+    auto space = space_of(request->task.example, request->task.parameters, preparations_);
+    if (!space) {
+        return tl::unexpected(proto::problem_of(space.error()));
+    }
+    if (!labels || labels->size() != (*space)->site_count()) {
         return tl::unexpected(make_problem("internal", "the job's labels are damaged"));
     }
-    return LoadedModel{request->task.example, {size, std::move(*labels)}};
+    return LoadedModel{request->task.example, {std::move(*space), std::move(*labels)}};
 }
 
 Parsed<std::string> JobService::model_digest(
@@ -328,9 +331,7 @@ Parsed<std::string> JobService::model_digest(
     }
     GlbOptions options;
     options.profile = profile;
-    const auto glb = write_glb(
-        make_scene(loaded->example, loaded->model, Box::whole(loaded->model.size)), options
-    );
+    const auto glb = write_glb(whole_scene(loaded->model), options);
     if (!glb) {
         return tl::unexpected(proto::problem_of(glb.error()));
     }
@@ -345,12 +346,9 @@ Parsed<std::string> JobService::model_digest(
     return (*pin)->digest();
 }
 
-std::optional<JobService::WholeState> JobService::whole_state(
-    const std::string& id, std::uint64_t seq
-) {
+std::optional<LiveJob::State> JobService::whole_state(const std::string& id, std::uint64_t seq) {
     if (const auto live = live_.find(id)) {
-        auto state = live->state_at(seq);
-        return state ? std::optional(WholeState{live->example(), std::move(*state)}) : std::nullopt;
+        return live->state_at(seq);
     }
     const auto job = jobs_.find(id);
     if (!job || !proto::is_ended(job->state)) {
@@ -361,21 +359,21 @@ std::optional<JobService::WholeState> JobService::whole_state(
     if (!loaded || job->head - 1 != seq) {
         return std::nullopt;
     }
-    return WholeState{loaded->example, {job->head - 1, std::move(loaded->model), true}};
+    return LiveJob::State{job->head - 1, std::move(loaded->model), true};
 }
 
-Parsed<JobService::LoadedModel> JobService::newest_model(const Job& job) {
+Parsed<Model> JobService::newest_model(const Job& job) {
     if (const auto live = live_.find(job.id)) {
         auto state = live->state();
         if (state.any_block) {
-            return LoadedModel{live->example(), std::move(state.model)};
+            return std::move(state.model);
         }
     }
     const auto labels = load_newest_labels(job);
     if (!labels && labels.error().code == StoreErrorCode::kNotFound) {
         return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
     }
-    return load_model(job, labels);
+    return load_model(job, labels).map([](LoadedModel loaded) { return std::move(loaded.model); });
 }
 
 Parsed<std::string> JobService::preview(const std::string& id) {
@@ -390,7 +388,7 @@ Parsed<std::string> JobService::preview(const std::string& id) {
     if (!model) {
         return tl::unexpected(model.error());
     }
-    auto glb = write_glb(make_scene(model->example, model->model, Box::whole(model->model.size)));
+    auto glb = write_glb(whole_scene(*model));
     if (!glb) {
         return tl::unexpected(proto::problem_of(glb.error()));
     }
@@ -408,6 +406,11 @@ Parsed<std::string> JobService::labels_json(
         load_model(*job, load_artifact(id, labels_artifact(alternative.value_or(0))));
     if (!loaded) {
         return tl::unexpected(loaded.error());
+    }
+    if (!loaded->model.space->is_grid()) {
+        return tl::unexpected(
+            make_problem("not-found", "the job's model has no cells that labels could stand in")
+        );
     }
     return proto::labels_json(loaded->example, loaded->model);
 }

@@ -73,19 +73,16 @@ class JobService {
     );
     // The model as far as it is. Fails: not-found, not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
-    // Which and fails: as model_digest().
+    // Which and fails: as model_digest(); not-found where the model has no cells.
     [[nodiscard]] proto::Parsed<std::string> labels_json(
         const std::string& id, const std::optional<std::uint32_t>& alternative
     );
 
     // The state of a job at an event or later, for whoever missed frames: labels and the seq up
     // to which they include everything. Nothing when there is no such state (yet).
-    struct WholeState {
-        Example example;
-        LiveJob::State state;
-    };
-
-    [[nodiscard]] std::optional<WholeState> whole_state(const std::string& id, std::uint64_t seq);
+    [[nodiscard]] std::optional<LiveJob::State> whole_state(
+        const std::string& id, std::uint64_t seq
+    );
 
     [[nodiscard]] ExampleLibrary& examples() { return examples_; }
 
@@ -124,7 +121,7 @@ class JobService {
     // The newest labels, as far as the store tells them; see newest_model() for jobs that run.
     [[nodiscard]] Stored<std::string> load_newest_labels(const proto::Job& job);
     // Fails: not-finished before the first accepted block.
-    [[nodiscard]] proto::Parsed<LoadedModel> newest_model(const proto::Job& job);
+    [[nodiscard]] proto::Parsed<Model> newest_model(const proto::Job& job);
     [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
     // The job, when it has that model.
     [[nodiscard]] proto::Parsed<proto::Job> find_with_model(

@@ -8,17 +8,14 @@ namespace modelsynth::server {
 namespace {
 
 void lay(const Patch& patch, Model& model) {
-    std::size_t next = 0;
-    for_each_cell(patch.region, [&](const Cell& cell) {
-        model.labels[model.size.index(cell)] = patch.labels[next++];
-    });
+    model.space->copy_in(patch.labels, patch.region, model.labels);
 }
 
 }  // namespace
 
-LiveJob::LiveJob(Example example, GridSize size) : example_(std::move(example)) {
-    base_.size = size;
-    base_.labels.assign(size.cell_count(), kNoLabel);
+LiveJob::LiveJob(std::shared_ptr<const ModelSpace> space)
+    : base_{std::move(space), std::vector<Label>()} {
+    base_.labels.assign(base_.space->site_count(), kNoLabel);
 }
 
 void LiveJob::start(std::uint64_t seq, std::span<const Label> model, bool any_block) {

@@ -19,7 +19,7 @@ namespace modelsynth::server {
 struct Patch {
     std::uint64_t seq = 0;
     Box region;
-    std::vector<Label> labels;  // of the region, x fastest, then z, then y
+    std::vector<Label> labels;  // of the region, as ModelSpace::copy_out() gives them
 };
 
 // The model of a job as far as its log tells it, for previews and partial frames. It changes only
@@ -33,11 +33,9 @@ class LiveJob {
         bool any_block = false;  // a block was accepted
     };
 
-    LiveJob(Example example, GridSize size);
+    explicit LiveJob(std::shared_ptr<const ModelSpace> space);
 
-    [[nodiscard]] const Example& example() const { return example_; }
-
-    [[nodiscard]] const GridSize& size() const { return base_.size; }
+    [[nodiscard]] const ModelSpace& space() const { return *base_.space; }
 
     // The initial model stands, or that of a checkpoint with accepted blocks; kNoLabel everywhere
     // where there is none. Of several models, the next begins so; the one before is forgotten.
@@ -66,7 +64,6 @@ class LiveJob {
 
     [[nodiscard]] State build(std::uint64_t seq) const;
 
-    Example example_;
     mutable std::mutex mutex_;
     Model base_;  // before the patches
     std::uint64_t base_seq_ = 0;

@@ -227,11 +227,7 @@ void LoggingObserver::replay(
 std::shared_ptr<Patch> LoggingObserver::make_patch(const BlockReport& report) const {
     auto patch = std::make_shared<Patch>();
     patch->region = report.region;
-    patch->labels.reserve(report.region.size().cell_count());
-    const GridSize size = live_->size();
-    for_each_cell(report.region, [&](const Cell& cell) {
-        patch->labels.push_back(report.model[size.index(cell)]);
-    });
+    patch->labels = live_->space().copy_out(report.model, report.region);
     return patch;
 }
 

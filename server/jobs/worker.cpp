@@ -78,8 +78,12 @@ class ClaimRun {
     };
 
     void solve(const proto::JobRequest& request) {
-        const GridSize size = model_size(request.task.parameters);
-        live_ = std::make_shared<LiveJob>(request.task.example, size);
+        auto space = space_of(request.task.example, request.task.parameters, context_.preparations);
+        if (!space) {
+            fail(proto::problem_of(space.error()));
+            return;
+        }
+        live_ = std::make_shared<LiveJob>(std::move(*space));
         context_.live.add(claim_.lease.job_id, live_);
         if (claim_.deadline_seconds) {
             const std::chrono::duration<double> left(
@@ -97,7 +101,7 @@ class ClaimRun {
 
     void make_one(const Task& task) {
         const EarlierProgress earlier =
-            read_earlier_progress(context_.events, claim_, live_->size().cell_count(), false);
+            read_earlier_progress(context_.events, claim_, live_->space().site_count(), false);
         LoggingObserver observer = make_observer(earlier, {});
         auto kept = make(task, earlier, observer, std::nullopt);
         if (!kept) {
@@ -118,7 +122,7 @@ class ClaimRun {
     // logged and linked to the job when it is there.
     void make_several(Task task, std::uint32_t wanted) {
         EarlierProgress earlier =
-            read_earlier_progress(context_.events, claim_, live_->size().cell_count(), true);
+            read_earlier_progress(context_.events, claim_, live_->space().site_count(), true);
         Alternatives series(task.seed, wanted);
         std::vector<std::string> results;
         for (const proto::CandidateEnd& end : earlier.candidates) {
@@ -219,8 +223,7 @@ class ClaimRun {
         if (!finished) {
             return tl::unexpected(std::move(finished.error()));
         }
-        auto glb =
-            write_glb(make_scene(task.example, finished->model, Box::whole(finished->model.size)));
+        auto glb = write_glb(whole_scene(finished->model));
         if (!glb) {
             return tl::unexpected(std::move(glb.error()));
         }
@@ -258,7 +261,8 @@ class ClaimRun {
             kept.links.front().digest,
             finished.stats,
             0,
-            finished.model.size,
+            finished.model.space->size(),
+            finished.model.space->is_grid(),
             place};
         link_example(kept.links);
         return kept;

@@ -96,13 +96,16 @@ std::string patch_payload(const LiveJob& live, const Patch& patch, Partial parti
         return proto::encode_labels(patch.labels);
     }
     // The region alone, in the whole model's frame.
-    Model model = {live.size(), {}};
-    model.labels.assign(model.size.cell_count(), kNoLabel);
-    std::size_t next = 0;
-    for_each_cell(patch.region, [&](const Cell& cell) {
-        model.labels[model.size.index(cell)] = patch.labels[next++];
-    });
-    return write_glb(make_scene(live.example(), model, patch.region)).value_or("");
+    // Cells look the same whatever is around them; surfaces depend on it.
+    std::vector<Label> labels(live.space().site_count(), kNoLabel);
+    if (live.space().is_grid()) {
+        live.space().copy_in(patch.labels, patch.region, labels);
+    } else if (auto state = live.state_at(patch.seq)) {
+        labels = std::move(state->model.labels);
+    } else {
+        return "";
+    }
+    return write_glb(live.space().make_scene(labels, patch.region)).value_or("");
 }
 
 // The frame of an accepted block; nothing when it is not kept any more.
@@ -132,18 +135,16 @@ std::optional<WholeFrame> whole_frame(
     JobService& service, const SocketUpgrade& upgrade, std::uint64_t seq, WholeIf condition
 ) {
     const auto whole = service.whole_state(upgrade.job_id, seq);
-    if (!whole || (condition == WholeIf::kAnyBlock && !whole->state.any_block)) {
+    if (!whole || (condition == WholeIf::kAnyBlock && !whole->any_block)) {
         return std::nullopt;
     }
-    const Model& model = whole->state.model;
-    const Box box = Box::whole(model.size);
+    const Model& model = whole->model;
+    const Box box = Box::whole(model.space->size());
     const bool labels = upgrade.partial == Partial::kLabels;
     const std::string payload =
-        labels ? proto::encode_labels(model.labels)
-               : write_glb(make_scene(whole->example, model, box)).value_or("");
+        labels ? proto::encode_labels(model.labels) : write_glb(whole_scene(model)).value_or("");
     const auto kind = labels ? proto::FrameKind::kLabelsWhole : proto::FrameKind::kGlbWhole;
-    return WholeFrame{
-        whole->state.seq, proto::encode_frame({kind, whole->state.seq, box, payload})};
+    return WholeFrame{whole->seq, proto::encode_frame({kind, whole->seq, box, payload})};
 }
 
 bool is_accepted_block(const Event& event) {

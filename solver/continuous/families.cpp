@@ -21,7 +21,8 @@ std::string pointer_to(std::size_t solid, std::size_t face) {
 Point canonical(const Point& normal) {
     for (int axis = 0; axis < 3; ++axis) {
         if (std::abs(normal[axis]) > kNormalTolerance) {
-            return normal[axis] < 0 ? Point(-normal) : normal;
+            // Adding 0 makes a plain 0 of its negative.
+            return (normal[axis] < 0 ? Point(-normal) : normal) + Point::Zero();
         }
     }
     return normal;

@@ -30,6 +30,8 @@ struct Patch {
 };
 
 class Reader {
+    static constexpr std::size_t kLooksMax = 200'000'000;  // some seconds
+
   public:
     Reader(const Example& example, const Families& families, const Topes& topes)
         : example_(example),
@@ -69,6 +71,12 @@ class Reader {
         read_corners();
         read_edges();
         read_faces();
+        if (is_spent()) {
+            return tl::unexpected(Error{
+                ErrorCode::kTooLarge,
+                "the example's faces meet in so many places that reading them would take too long"}
+            );
+        }
         if (!faults_.empty()) {
             return tl::unexpected(Error{
                 ErrorCode::kInvalidArgument,
@@ -80,6 +88,9 @@ class Reader {
     }
 
   private:
+    // Whether all that may be looked at was looked at.
+    [[nodiscard]] bool is_spent() const { return looks_ > kLooksMax; }
+
     [[nodiscard]] bool is_in_bounds(const Point& point) const {
         return !example_.bounds ||
                ((point.array() > example_.bounds->min.array() + tolerance_).all() &&
@@ -110,6 +121,10 @@ class Reader {
                 const Patch& second = patches_[near[i]];
                 const FamilySet line =
                     topes_.lines()[topes_.line_of(patches_[a].family, second.family)].families;
+                looks_ += near.size() - i;
+                if (is_spent()) {
+                    return;
+                }
                 for (std::size_t j = i + 1; j < near.size(); ++j) {
                     const Patch& third = patches_[near[j]];
                     if ((line >> third.family & 1) == 0 && overlap(second, third)) {
@@ -226,6 +241,10 @@ class Reader {
 
     // `patch`: to name the place in a fault.
     void read_figure(const Point& point, const Patch& patch) {
+        looks_ += 20 * patches_.size();
+        if (is_spent()) {
+            return;
+        }
         FamilySet here = 0;
         double nearest = extent_;
         for (const Patch& other : patches_) {
@@ -250,6 +269,7 @@ class Reader {
             const auto tope = static_cast<Tope>(t);
             const auto [at, is_new] = known.try_emplace(topes_.sides(tope) & here, '\0');
             if (is_new) {
+                looks_ += 20;
                 const Point sample = point + reach * topes_.inside(tope);
                 at->second = static_cast<char>(solids_.at(sample));
             }
@@ -275,6 +295,7 @@ class Reader {
     std::vector<Point> corners_;
     std::vector<Figure> figures_;
     std::vector<Fault> faults_;
+    std::size_t looks_ = 0;  // at faces, about
 };
 
 }  // namespace

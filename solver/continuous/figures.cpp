@@ -1,26 +1,39 @@
 #include "solver/continuous/figures.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace modelsynth::continuous {
 
-Figures::Figures(const Topes& topes, const std::vector<Figure>& seeds) : topes_(topes) {
+Result<Figures> Figures::make(
+    const Topes& topes, const std::vector<Figure>& seeds, std::size_t figures_max
+) {
+    constexpr std::size_t kBytesMax = std::size_t{1} << 30;  // looked at in all
+    Figures made(topes);
     for (const Figure& seed : seeds) {
-        ++occurrences_[add(seed)];
+        ++made.occurrences_[made.add(seed)];
     }
     const std::size_t headings = topes.heading_count();
     Figure next(topes.count(), '\0');
-    for (std::size_t label = 0; label < figures_.size(); ++label) {
+    for (std::size_t label = 0; label < made.count(); ++label) {
+        if (made.count() > figures_max || label * headings * topes.count() > kBytesMax) {
+            return tl::unexpected(Error{
+                ErrorCode::kTooLarge,
+                "the example has more than " + std::to_string(std::min(made.count(), figures_max)) +
+                    " different vertex figures of faces in " +
+                    std::to_string(topes.family_count()) + " directions"});
+        }
         for (std::size_t heading = 0; heading < headings; ++heading) {
-            const Figure& figure = *figures_[label];
+            const Figure& figure = *made.figures_[label];
             for (std::size_t tope = 0; tope < next.size(); ++tope) {
                 next[tope] =
                     figure[topes.composed(static_cast<Heading>(heading), static_cast<Tope>(tope))];
             }
-            along_.push_back(add(next));
+            made.along_.push_back(made.add(next));
         }
     }
+    return made;
 }
 
 Label Figures::add(Figure figure) {

@@ -24,7 +24,10 @@ using Figure = std::string;
 class Figures {
   public:
     // Requires: `topes` outlives it.
-    Figures(const Topes& topes, const std::vector<Figure>& seeds);
+    // Fails: kTooLarge when there would be more than figures_max, or their tables would take long.
+    [[nodiscard]] static Result<Figures> make(
+        const Topes& topes, const std::vector<Figure>& seeds, std::size_t figures_max
+    );
 
     [[nodiscard]] std::size_t count() const { return figures_.size(); }
 
@@ -48,11 +51,13 @@ class Figures {
     [[nodiscard]] const Topes& topes() const { return topes_; }
 
   private:
+    explicit Figures(const Topes& topes) : topes_(topes) {}
+
     Label add(Figure figure);
 
     const Topes& topes_;
     std::unordered_map<Figure, Label> numbers_;
-    std::vector<const Figure*> figures_;  // keys of numbers_
+    std::vector<const Figure*> figures_;  // keys of numbers_, which stay where they are
     std::vector<FamilySet> relevant_;
     std::vector<Label> along_;
     std::vector<std::uint32_t> occurrences_;

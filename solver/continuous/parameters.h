@@ -2,6 +2,8 @@
 
 #include "solver/continuous/example.h"
 #include "solver/core/block_schedule.h"
+#include "solver/core/grid.h"
+#include "solver/core/result.h"
 
 #include <array>
 #include <cstdint>
@@ -12,25 +14,51 @@
 
 namespace modelsynth::continuous {
 
-struct Blocks {
-    BlockLayout layout;  // in spacings
-    std::uint32_t attempts = 8;
+// The example's Dimension, as requests name it.
+struct DimensionRule {
+    std::string object;
+    Point normal = Point::UnitY();  // need not be of unit length
 
-    friend bool operator==(const Blocks&, const Blocks&) = default;
+    friend bool operator==(const DimensionRule&, const DimensionRule&) = default;
 };
 
 // What a continuous synthesis can be asked for; plain data.
 struct Parameters {
-    std::optional<std::array<double, 3>> size;    // metres; none: the example's default
-    std::optional<double> spacing;                // metres; none: the example's
-    std::optional<std::optional<Blocks>> blocks;  // a value without blocks: the whole at once
+    std::optional<std::array<double, 3>> size;  // metres; none: the example's default
+    std::optional<double> spacing;              // metres; none: the example's
+    // In spacings. None: chosen to suit the size; a value without blocks: the whole at once.
+    std::optional<std::optional<Blocks>> blocks;
     // 0 ... 1: how full the model is to be. What is empty space or bare ground has the weight
     // density^-2 against all else. None: the example's.
     std::optional<double> density;
     // Weights of figures by the object types in them; those not named have the example's.
     std::vector<std::pair<std::string, double>> weights;
+    std::optional<std::vector<DimensionRule>> dimensions;  // none: the example's
 
     friend bool operator==(const Parameters&, const Parameters&) = default;
 };
+
+inline constexpr std::int32_t kCellsAlongMax = 4096;
+
+// The parameters with every default filled in from the example.
+[[nodiscard]] Parameters fill_defaults(Parameters parameters, const Example& example);
+
+class ExampleReading;
+class Topes;
+
+// What cannot be done of them; pointers are relative to the parameters. Requires: defaults filled
+// in.
+[[nodiscard]] std::vector<Fault> find_faults(
+    const ExampleReading& reading, const Parameters& parameters
+);
+
+// The object of a name; kEmpty when there is none.
+[[nodiscard]] ObjectId find_object(const Example& example, const std::string& name);
+
+// The family that a normal or its opposite, of any length, is that of.
+[[nodiscard]] std::optional<std::size_t> find_family(const Topes& topes, const Point& normal);
+
+// The model's size in spacings, cut ones counted whole. Requires: defaults filled in.
+[[nodiscard]] GridSize cells_of(const Parameters& parameters);
 
 }  // namespace modelsynth::continuous

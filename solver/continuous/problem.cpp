@@ -36,13 +36,10 @@ PlaneOffsets planes_through(const Point& normal, double spacing, const Bounds& b
 Arrangement::Frame frame_of(const Parameters& parameters, bool has_ground) {
     const double spacing = *parameters.spacing;
     const std::array<double, 3>& size = *parameters.size;
-    const auto cells = [&](double length) {
-        return std::max(1, static_cast<std::int32_t>(std::ceil(length / spacing - 1e-6)));
-    };
     Arrangement::Frame frame;
     frame.box.min = Point(0, has_ground ? -kBelowGround * spacing : 0, 0);
     frame.box.max = Point(size[0], size[1], size[2]);
-    frame.cells = {cells(size[0]), cells(size[1]), cells(size[2])};
+    frame.cells = cells_of(parameters);
     frame.cell = spacing;
     return frame;
 }
@@ -68,25 +65,24 @@ std::vector<Label> initial_labels(const ExampleReading& reading, const Arrangeme
 // The figures that an object's dimension takes from vertices on a plane of the family: those in
 // which the object is on both sides of it.
 void forbid_wider(
-    const ExampleReading& reading, FamilySet families, const Dimension& dimension, LabelSet& allowed
+    const ExampleReading& reading,
+    FamilySet families,
+    const DimensionRule& dimension,
+    LabelSet& allowed
 ) {
     const Topes& topes = reading.topes();
-    const Point normal = dimension.normal.normalized();
-    for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        if ((families >> family & 1) == 0 ||
-            std::abs(topes.normals()[family].dot(normal)) < 1 - 1e-9) {
-            continue;
-        }
-        for (std::size_t l = 0; l < reading.figures().count(); ++l) {
-            const Figure& figure = reading.figures().at(static_cast<Label>(l));
-            for (std::size_t t = 0; t < topes.count(); ++t) {
-                const Tope beyond = topes.across(static_cast<Tope>(t), family);
-                const bool goes_through = beyond != t && figure[t] == figure[beyond] &&
-                                          static_cast<ObjectId>(figure[t]) == dimension.object;
-                if (goes_through) {
-                    allowed.erase(static_cast<Label>(l));
-                    break;
-                }
+    const std::size_t family = *find_family(topes, dimension.normal);
+    const auto object = static_cast<char>(find_object(reading.example(), dimension.object));
+    if ((families >> family & 1) == 0) {
+        return;
+    }
+    for (std::size_t l = 0; l < reading.figures().count(); ++l) {
+        const Figure& figure = reading.figures().at(static_cast<Label>(l));
+        for (std::size_t t = 0; t < topes.count(); ++t) {
+            const Tope beyond = topes.across(static_cast<Tope>(t), family);
+            if (beyond != t && figure[t] == object && figure[beyond] == object) {
+                allowed.erase(static_cast<Label>(l));
+                break;
             }
         }
     }
@@ -95,7 +91,10 @@ void forbid_wider(
 // A vertex takes figures that change only across its planes, and that look the same as the initial
 // model along edges that leave the box.
 SiteDomains domains_of(
-    const ExampleReading& reading, const Arrangement& arrangement, std::span<const Label> initial
+    const ExampleReading& reading,
+    const Parameters& parameters,
+    const Arrangement& arrangement,
+    std::span<const Label> initial
 ) {
     const Figures& figures = reading.figures();
     using Key = std::tuple<FamilySet, Label, std::vector<Heading>>;
@@ -128,7 +127,7 @@ SiteDomains domains_of(
                 allowed.insert(label);
             }
         }
-        for (const Dimension& dimension : reading.example().dimensions) {
+        for (const DimensionRule& dimension : *parameters.dimensions) {
             forbid_wider(reading, families, dimension, allowed);
         }
         domains.narrow(site, allowed);
@@ -190,7 +189,7 @@ Result<Problem> make_problem(
         return tl::unexpected(std::move(arrangement.error()));
     }
     std::vector<Label> initial = initial_labels(*reading, *arrangement);
-    SiteDomains domains = domains_of(*reading, *arrangement, initial);
+    SiteDomains domains = domains_of(*reading, parameters, *arrangement, initial);
     std::set<FamilySet> types;
     for (std::size_t site = 0; site < arrangement->vertex_count(); ++site) {
         types.insert(arrangement->families(static_cast<Site>(site)));

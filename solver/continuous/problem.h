@@ -14,7 +14,7 @@
 
 namespace modelsynth::continuous {
 
-inline constexpr std::size_t kVerticesMax = 4'000'000;
+inline constexpr std::size_t kVerticesMax = 2'000'000;
 
 // A request as sites, labels and relations. Thread-safe.
 struct Problem {

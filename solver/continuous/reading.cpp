@@ -66,13 +66,11 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(Example examp
     if (!seeds) {
         return tl::unexpected(seeds.error());
     }
-    made->figures_.emplace(made->topes_, *seeds);
-    if (made->figures_->count() > kFiguresMax) {
-        return tl::unexpected(Error{
-            ErrorCode::kTooLarge,
-            "the example has " + std::to_string(made->figures_->count()) +
-                " different vertex figures, more than " + std::to_string(kFiguresMax)});
+    auto figures = Figures::make(made->topes_, *seeds, kFiguresMax);
+    if (!figures) {
+        return tl::unexpected(std::move(figures.error()));
     }
+    made->figures_.emplace(std::move(*figures));
     if (const auto ground = made->example_.ground) {
         const Figure bare = face_figure(made->topes_, *made->horizontal(), *ground, kEmpty);
         if (made->figures_->find(bare) == kNoLabel) {

@@ -27,53 +27,79 @@ FaceAxes axes_of(const Point& normal) {
     return {right, normal.cross(right)};
 }
 
+// A convex polygon cut to a box (Sutherland and Hodgman 1974).
+std::vector<Point> clipped(std::vector<Point> polygon, const Bounds& box) {
+    for (int side = 0; side < 6 && !polygon.empty(); ++side) {
+        const int axis = side / 2;
+        const double limit = side % 2 == 0 ? box.min[axis] : box.max[axis];
+        const double sign = side % 2 == 0 ? 1 : -1;
+        std::vector<Point> kept;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Point& a = polygon[i];
+            const Point& b = polygon[(i + 1) % polygon.size()];
+            const double inside_a = sign * (a[axis] - limit);
+            const double inside_b = sign * (b[axis] - limit);
+            if (inside_a >= 0) {
+                kept.push_back(a);
+            }
+            if ((inside_a > 0 && inside_b < 0) || (inside_a < 0 && inside_b > 0)) {
+                kept.push_back(a + inside_a / (inside_a - inside_b) * (b - a));
+            }
+        }
+        polygon = std::move(kept);
+    }
+    return polygon;
+}
+
 class MeshBuilder {
   public:
     MeshBuilder(const Example& example, const std::string& name) {
         kit_->materials = example.materials;
         mesh_.name = name;
-        part_of_material_.assign(example.materials.size(), kNone);
+        primitive_of_material_.assign(example.materials.size(), kNone);
     }
 
+    // `part`: what lies outside of it is cut off; null: nothing is.
     void add(
         std::uint32_t material,
         std::span<const Point> points,
         const std::vector<std::vector<std::uint32_t>>& loops,
-        const Point& normal
+        const Point& normal,
+        const Bounds* part = nullptr
     ) {
-        Primitive& part = part_of(material);
+        Primitive& primitive = primitive_of(material);
         const FaceAxes axes = axes_of(normal);
+        std::vector<Point> corners;
         std::vector<Point2> flat;
         std::vector<Loop> numbered;
         std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-        const auto first = static_cast<std::uint32_t>(part.positions.size());
         for (const std::vector<std::uint32_t>& loop : loops) {
             Loop& own = numbered.emplace_back();
             for (const std::uint32_t point : loop) {
                 const auto next = static_cast<std::uint32_t>(flat.size());
                 const auto [at, is_new] = numbers.try_emplace(point, next);
                 if (is_new) {
-                    const Point& p = points[point];
-                    flat.push_back({p.dot(axes.right), p.dot(axes.up)});
-                    part.positions.push_back(
-                        {static_cast<float>(p.x()),
-                         static_cast<float>(p.y()),
-                         static_cast<float>(p.z())}
-                    );
-                    part.normals.push_back(
-                        {static_cast<float>(normal.x()),
-                         static_cast<float>(normal.y()),
-                         static_cast<float>(normal.z())}
-                    );
-                    part.colors.push_back({255, 255, 255});
+                    corners.push_back(points[point]);
+                    flat.push_back({points[point].dot(axes.right), points[point].dot(axes.up)});
                 }
                 own.push_back(at->second);
             }
         }
         const std::span<const Loop> holes(numbered.data() + 1, numbered.size() - 1);
-        for (const auto& triangle : triangulate(flat, numbered.front(), holes)) {
+        const auto triangles = triangulate(flat, numbered.front(), holes);
+        if (part != nullptr) {
+            for (const auto& [a, b, c] : triangles) {
+                add_fan(primitive, clipped({corners[a], corners[b], corners[c]}, *part), normal);
+            }
+            return;
+        }
+        const auto first = static_cast<std::uint32_t>(primitive.positions.size());
+        for (const Point& corner : corners) {
+            add_vertex(primitive, corner, normal);
+        }
+        for (const auto& triangle : triangles) {
             for (const std::uint32_t corner : triangle) {
-                part.indices.push_back(first + corner);
+                primitive.indices.push_back(first + corner);
             }
         }
     }
@@ -90,23 +116,45 @@ class MeshBuilder {
   private:
     static constexpr std::size_t kNone = ~std::size_t{0};
 
-    Primitive& part_of(std::uint32_t material) {
-        std::size_t& part = part_of_material_[material];
-        if (part == kNone) {
-            part = mesh_.primitives.size();
+    static void add_vertex(Primitive& primitive, const Point& point, const Point& normal) {
+        const auto rounded = [](const Point& p) {
+            return Vec3{
+                static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+        };
+        primitive.positions.push_back(rounded(point));
+        primitive.normals.push_back(rounded(normal));
+        primitive.colors.push_back({255, 255, 255});
+    }
+
+    static void add_fan(
+        Primitive& primitive, const std::vector<Point>& polygon, const Point& normal
+    ) {
+        const auto first = static_cast<std::uint32_t>(primitive.positions.size());
+        for (const Point& corner : polygon) {
+            add_vertex(primitive, corner, normal);
+        }
+        for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
+            for (const std::uint32_t corner : {0U, i, i + 1}) {
+                primitive.indices.push_back(first + corner);
+            }
+        }
+    }
+
+    Primitive& primitive_of(std::uint32_t material) {
+        std::size_t& number = primitive_of_material_[material];
+        if (number == kNone) {
+            number = mesh_.primitives.size();
             mesh_.primitives.emplace_back().material = material;
         }
-        return mesh_.primitives[part];
+        return mesh_.primitives[number];
     }
 
     std::shared_ptr<Kit> kit_ = std::make_shared<Kit>();
     Mesh mesh_;
-    std::vector<std::size_t> part_of_material_;
+    std::vector<std::size_t> primitive_of_material_;
 };
 
-}  // namespace
-
-Scene make_scene(const ExampleReading& reading, const Surface& surface) {
+Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* part) {
     const Example& example = reading.example();
     MeshBuilder builder(example, "model");
     for (const SurfacePolygon& polygon : surface.polygons) {
@@ -121,10 +169,24 @@ Scene make_scene(const ExampleReading& reading, const Surface& surface) {
                          .normalized();
         }
         builder.add(
-            example.objects[polygon.object - 1U].material, surface.points, polygon.loops, normal
+            example.objects[polygon.object - 1U].material,
+            surface.points,
+            polygon.loops,
+            normal,
+            part
         );
     }
     return builder.finish();
+}
+
+}  // namespace
+
+Scene make_scene(const ExampleReading& reading, const Surface& surface) {
+    return draw(reading, surface, nullptr);
+}
+
+Scene make_scene(const ExampleReading& reading, const Surface& surface, const Bounds& part) {
+    return draw(reading, surface, &part);
 }
 
 Scene make_example_scene(const ExampleReading& reading) {

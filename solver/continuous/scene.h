@@ -10,6 +10,11 @@ namespace modelsynth::continuous {
 // metres along each face, upright where the face is. Frame: that of the model.
 [[nodiscard]] Scene make_scene(const ExampleReading& reading, const Surface& surface);
 
+// The part of it inside a box, cut open where it goes on.
+[[nodiscard]] Scene make_scene(
+    const ExampleReading& reading, const Surface& surface, const Bounds& part
+);
+
 // The example's solids as they were given, on a piece of ground when there is one.
 [[nodiscard]] Scene make_example_scene(const ExampleReading& reading);
 

@@ -114,6 +114,35 @@ bool is_along_axis(const Point& normal) {
     return normal.cwiseAbs().maxCoeff() > 1 - kNormalTolerance;
 }
 
+// Of a family that nothing is asked of: planes through all points of the grid that the families
+// along the axes make, where slopes are small ratios. What stands on a grid stays on it.
+std::optional<double> on_grid(
+    const Topes& topes, std::size_t family, std::span<const double> spacings
+) {
+    std::vector<double> steps;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double part = std::abs(topes.normals()[family][axis]);
+        if (part < kNormalTolerance) {
+            continue;
+        }
+        double along_axis = 0;
+        for (std::size_t other = 0; other < topes.family_count(); ++other) {
+            if (std::abs(topes.normals()[other][axis]) > 1 - kNormalTolerance) {
+                along_axis = spacings[other];
+            }
+        }
+        if (along_axis == 0) {
+            return std::nullopt;
+        }
+        steps.push_back(part * along_axis);
+    }
+    const double least = *std::min_element(steps.begin(), steps.end());
+    const bool fits = std::all_of(steps.begin(), steps.end(), [least](double step) {
+        return is_small_ratio(step / least);
+    });
+    return fits ? std::optional(least) : std::nullopt;
+}
+
 }  // namespace
 
 Spacings solve_spacings(const Figures& figures, double spacing, std::span<const double> fixed) {
@@ -159,7 +188,8 @@ Spacings solve_spacings(const Figures& figures, double spacing, std::span<const 
         if (!goes_on) {
             const auto open = std::find(next.begin(), next.end(), 0.0);
             if (open != next.end()) {
-                *open = spacing;
+                const auto family = static_cast<std::size_t>(open - next.begin());
+                *open = on_grid(topes, family, found).value_or(spacing);
                 goes_on = true;
             }
         }

@@ -19,6 +19,14 @@ struct BlockLayout {
     friend bool operator==(const BlockLayout&, const BlockLayout&) = default;
 };
 
+// Blocks of Algorithm 3.4 and how often each is tried before it is taken back.
+struct Blocks {
+    BlockLayout layout;
+    std::uint32_t attempts = 8;
+
+    friend bool operator==(const Blocks&, const Blocks&) = default;
+};
+
 // The blocks in the order in which they are modified: x outermost, then z, then y (the thesis's
 // q_x, q_y, q_z, whose third axis points up). They cover every cell; the last block of an axis is
 // moved back so that it ends with the model.

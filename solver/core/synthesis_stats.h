@@ -2,6 +2,7 @@
 
 #include "solver/core/search_tally.h"
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct SynthesisStats {
     std::optional<double> objective = std::nullopt;
     // ... and in each of the models that the best was chosen from; nothing for one that failed.
     std::vector<std::optional<double>> candidates = {};
+    // Of the surface, where the model is made of polygons.
+    std::optional<std::size_t> polygons = std::nullopt;
 };
 
 }  // namespace modelsynth

@@ -20,13 +20,7 @@ namespace modelsynth::discrete {
 using WeightList = std::vector<std::pair<std::string, double>>;
 using Weights = std::variant<WeightRule, WeightList>;
 
-// Blocks of Algorithm 3.4 and how often each is tried before it is taken back.
-struct Blocks {
-    BlockLayout layout;
-    std::uint32_t attempts = 8;
-
-    friend bool operator==(const Blocks&, const Blocks&) = default;
-};
+using modelsynth::Blocks;
 
 // Grey values over x (west to east) and z (north to south), stretched over the model: 0 nothing,
 // 1 all. From an image, whose text is kept so that it can be told again.

@@ -107,12 +107,9 @@ void show_solids(
         if (std::sscanf(size.c_str(), "%lfx%lfx%lf", metres.data(), &metres[1], &metres[2]) != 3) {
             continue;
         }
-        const continuous::Parameters parameters = {
-            metres,
-            example.spacing,
-            std::optional<continuous::Blocks>(continuous::Blocks()),
-            example.density,
-            {}};
+        continuous::Parameters asked_for;
+        asked_for.size = metres;
+        const continuous::Parameters parameters = fill_defaults(asked_for, example);
         const auto problem = continuous::make_problem(reading, parameters);
         if (!problem) {
             std::fprintf(stderr, "%s\n", problem.error().message.c_str());

@@ -1,9 +1,13 @@
 #include "solver/registry/task.h"
 
+#include "solver/continuous/scene.h"
+#include "solver/continuous/surface.h"
+#include "solver/continuous/synthesis.h"
 #include "solver/discrete/analysis/infallibility.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
+#include "solver/registry/model_spaces.h"
 
 #include <algorithm>
 #include <string>
@@ -13,15 +17,16 @@ namespace modelsynth {
 
 namespace {
 
-// With one solver the variants have one alternative; std::get picks it. The next solver turns
-// these into visits.
-const discrete::Example& discrete_of(const Example& example) {
-    return *std::get<std::shared_ptr<const discrete::Example>>(example);
-}
+using DiscreteExample = std::shared_ptr<const discrete::Example>;
+using Solids = std::shared_ptr<const continuous::ExampleReading>;
 
-const discrete::Parameters& discrete_of(const Parameters& parameters) {
-    return std::get<discrete::Parameters>(parameters);
-}
+// One of several functions, by the type of its argument.
+template <class... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
 
 // Models of so many cells are made whole within some ten milliseconds; larger ones in blocks all
 // the same, so that there is something to watch and work for several threads.
@@ -45,46 +50,124 @@ bool is_made_in_one_pass(const discrete::Parameters& parameters, const discrete:
 
 }  // namespace
 
-std::string_view solver_of(const Example& /*example*/) { return "discrete"; }
+std::string_view solver_of(const Example& example) {
+    return std::visit(
+        Overloaded{
+            [](const DiscreteExample&) { return "discrete"; },
+            [](const Solids&) { return "continuous"; }},
+        example
+    );
+}
 
-std::string_view name_of(const Example& example) { return discrete_of(example).name; }
+std::string_view name_of(const Example& example) {
+    return std::visit(
+        Overloaded{
+            [](const DiscreteExample& grid) -> std::string_view { return grid->name; },
+            [](const Solids& solids) -> std::string_view { return solids->example().name; }},
+        example
+    );
+}
+
+bool solver_has_cells(std::string_view solver) { return solver != "continuous"; }
 
 std::vector<std::string> label_names(const Example& example) {
     std::vector<std::string> names;
-    for (const discrete::Piece& piece : discrete_of(example).pieces) {
-        names.push_back(piece.name);
+    if (const auto* grid = std::get_if<DiscreteExample>(&example)) {
+        for (const discrete::Piece& piece : (*grid)->pieces) {
+            names.push_back(piece.name);
+        }
     }
     return names;
 }
 
 Scene example_scene(const Example& example) {
-    const discrete::Example& grid = discrete_of(example);
-    if (grid.size.cell_count() == 0) {
-        return discrete::make_piece_sheet(grid);  // rules without an arrangement
-    }
-    return discrete::make_scene(grid, grid.size, grid.cells, Box::whole(grid.size));
+    return std::visit(
+        Overloaded{
+            [](const DiscreteExample& grid) {
+                return grid->size.cell_count() == 0  // rules without an arrangement
+                           ? discrete::make_piece_sheet(*grid)
+                           : discrete::make_scene(
+                                 *grid, grid->size, grid->cells, Box::whole(grid->size)
+                             );
+            },
+            [](const Solids& solids) { return continuous::make_example_scene(*solids); }},
+        example
+    );
 }
 
-Scene pieces_scene(const Example& example) {
-    return discrete::make_piece_sheet(discrete_of(example));
+std::optional<Scene> pieces_scene(const Example& example) {
+    const auto* grid = std::get_if<DiscreteExample>(&example);
+    return grid == nullptr ? std::nullopt : std::optional(discrete::make_piece_sheet(**grid));
 }
 
 Parameters with_defaults(const Parameters& parameters, const Example& example) {
-    const discrete::Parameters& given = discrete_of(parameters);
-    discrete::Parameters filled = discrete::fill_defaults(given, discrete_of(example));
-    if (!given.blocks && is_made_in_one_pass(filled, discrete_of(example))) {
-        filled.blocks.emplace(std::nullopt);
-    }
-    return filled;
+    return std::visit(
+        Overloaded{
+            [&](const DiscreteExample& grid) -> Parameters {
+                const auto& given = std::get<discrete::Parameters>(parameters);
+                discrete::Parameters filled = discrete::fill_defaults(given, *grid);
+                if (!given.blocks && is_made_in_one_pass(filled, *grid)) {
+                    filled.blocks.emplace(std::nullopt);
+                }
+                return filled;
+            },
+            [&](const Solids& solids) -> Parameters {
+                return continuous::fill_defaults(
+                    std::get<continuous::Parameters>(parameters), solids->example()
+                );
+            }},
+        example
+    );
 }
 
 std::vector<Fault> find_faults(const Example& example, const Parameters& parameters) {
-    return discrete::find_faults(discrete_of(example), discrete_of(parameters));
+    return std::visit(
+        Overloaded{
+            [&](const DiscreteExample& grid) {
+                return discrete::find_faults(*grid, std::get<discrete::Parameters>(parameters));
+            },
+            [&](const Solids& solids) {
+                return continuous::find_faults(
+                    *solids, std::get<continuous::Parameters>(parameters)
+                );
+            }},
+        example
+    );
 }
 
-GridSize model_size(const Parameters& parameters) { return *discrete_of(parameters).size; }
+GridSize model_size(const Parameters& parameters) {
+    return std::visit(
+        Overloaded{
+            [](const discrete::Parameters& grid) { return *grid.size; },
+            [](const continuous::Parameters& solids) { return continuous::cells_of(solids); }},
+        parameters
+    );
+}
 
-Result<Finished> run(
+std::optional<BlockLayout> block_layout(const Parameters& parameters) {
+    return std::visit(
+        [](const auto& of_solver) {
+            return *of_solver.blocks ? std::optional((*of_solver.blocks)->layout) : std::nullopt;
+        },
+        parameters
+    );
+}
+
+Result<std::shared_ptr<const ModelSpace>> space_of(
+    const Example& example, const Parameters& parameters, Preparations& preparations
+) {
+    using Space = std::shared_ptr<const ModelSpace>;
+    if (const auto* grid = std::get_if<DiscreteExample>(&example)) {
+        return make_grid_space(*grid, model_size(parameters));
+    }
+    return preparations.continuous
+        .find_or_make(std::get<Solids>(example), std::get<continuous::Parameters>(parameters))
+        .map([](auto problem) -> Space { return make_vertex_space(std::move(problem)); });
+}
+
+namespace {
+
+Result<Finished> run_discrete(
     const Task& task,
     Preparations& preparations,
     Observer& observer,
@@ -92,8 +175,8 @@ Result<Finished> run(
     const Checkpoint* from,
     std::uint32_t threads
 ) {
-    const auto& example = std::get<std::shared_ptr<const discrete::Example>>(task.example);
-    const discrete::Parameters& parameters = discrete_of(task.parameters);
+    const auto& example = std::get<DiscreteExample>(task.example);
+    const auto& parameters = std::get<discrete::Parameters>(task.parameters);
     // What starts from one model is of no use to the next request.
     const auto preparation =
         task.origin == nullptr
@@ -106,19 +189,55 @@ Result<Finished> run(
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }
-    return Finished{{made->size, std::move(made->labels)}, std::move(made->stats)};
+    return Finished{
+        {make_grid_space(example, made->size), std::move(made->labels)}, std::move(made->stats)};
+}
+
+Result<Finished> run_continuous(
+    const Task& task,
+    Preparations& preparations,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from
+) {
+    const auto& parameters = std::get<continuous::Parameters>(task.parameters);
+    const auto problem =
+        preparations.continuous.find_or_make(std::get<Solids>(task.example), parameters);
+    if (!problem) {
+        return tl::unexpected(problem.error());
+    }
+    auto made = continuous::synthesise(**problem, parameters, task.seed, observer, stop, from);
+    if (!made) {
+        return tl::unexpected(std::move(made.error()));
+    }
+    made->stats.polygons = continuous::make_surface(**problem, made->labels).polygons.size();
+    return Finished{{make_vertex_space(*problem), std::move(made->labels)}, std::move(made->stats)};
+}
+
+}  // namespace
+
+Result<Finished> run(
+    const Task& task,
+    Preparations& preparations,
+    Observer& observer,
+    const std::stop_token& stop,
+    const Checkpoint* from,
+    std::uint32_t threads
+) {
+    return std::holds_alternative<DiscreteExample>(task.example)
+               ? run_discrete(task, preparations, observer, stop, from, threads)
+               : run_continuous(task, preparations, observer, stop, from);
 }
 
 Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {
-    auto analysis = discrete::analyse(discrete_of(example), stop);
+    if (const auto* solids = std::get_if<Solids>(&example)) {
+        return Analysis(continuous::analyse(**solids));
+    }
+    auto analysis = discrete::analyse(*std::get<DiscreteExample>(example), stop);
     if (!analysis) {
         return tl::unexpected(std::move(analysis.error()));
     }
     return Analysis(std::move(*analysis));
-}
-
-Scene make_scene(const Example& example, const Model& model, const Box& region) {
-    return discrete::make_scene(discrete_of(example), model.size, model.labels, region);
 }
 
 }  // namespace modelsynth

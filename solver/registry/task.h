@@ -1,6 +1,9 @@
 #pragma once
 
-#include "solver/core/grid.h"
+#include "solver/continuous/analysis.h"
+#include "solver/continuous/parameters.h"
+#include "solver/continuous/problem_cache.h"
+#include "solver/continuous/reading.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
 #include "solver/core/synthesis_stats.h"
@@ -10,9 +13,11 @@
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/preparation.h"
 #include "solver/mesh/scene.h"
+#include "solver/registry/model_space.h"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string_view>
 #include <variant>
@@ -22,30 +27,29 @@ namespace modelsynth {
 
 // The registry: what every solver looks like to the program that runs it. A new solver adds an
 // alternative to the variants and a line to each function of task.cpp.
-using Example = std::variant<std::shared_ptr<const discrete::Example>>;
-using Parameters = std::variant<discrete::Parameters>;
+using Example = std::variant<
+    std::shared_ptr<const discrete::Example>,
+    std::shared_ptr<const continuous::ExampleReading>>;
+using Parameters = std::variant<discrete::Parameters, continuous::Parameters>;
 
 // "discrete", ...: the name under which requests ask for the solver of such examples.
 [[nodiscard]] std::string_view solver_of(const Example& example);
 [[nodiscard]] std::string_view name_of(const Example& example);
 
-// What a synthesis makes, as far as it has come. A cell of kNoLabel is not made yet.
-struct Model {
-    GridSize size;
-    std::vector<Label> labels;  // x fastest, then z, then y
-};
+// Whether the labels of a solver's models stand in the cells of a grid.
+[[nodiscard]] bool solver_has_cells(std::string_view solver);
 
 struct Finished {
     Model model;
     SynthesisStats stats;
 };
 
-// Names of the labels, by label.
+// Names of the labels, by label; nothing where labels have none.
 [[nodiscard]] std::vector<std::string> label_names(const Example& example);
 
-// The example as it was given, to look at, and its pieces side by side.
+// The example as it was given, to look at, and its pieces side by side, where it has pieces.
 [[nodiscard]] Scene example_scene(const Example& example);
-[[nodiscard]] Scene pieces_scene(const Example& example);
+[[nodiscard]] std::optional<Scene> pieces_scene(const Example& example);
 
 // One request, checked and complete: all that a worker needs.
 struct Task {
@@ -59,14 +63,24 @@ struct Task {
 [[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);
 [[nodiscard]] std::vector<Fault> find_faults(const Example& example, const Parameters& parameters);
 
-// How large the model will be.
+// How large the model will be, in cells. Requires: defaults filled in.
 [[nodiscard]] GridSize model_size(const Parameters& parameters);
+
+// How it is cut into blocks; nothing where it is made at once. Requires: defaults filled in.
+[[nodiscard]] std::optional<BlockLayout> block_layout(const Parameters& parameters);
 
 // What solvers keep from task to task, so that requests that differ in their seed alone need not
 // begin from nothing. It changes no result. Thread-safe.
 struct Preparations {
     discrete::PreparationCache discrete;
+    continuous::ProblemCache continuous;
 };
+
+// What the labels of a task's model stand for. Fails: as run(), where the example and the
+// parameters alone tell so.
+[[nodiscard]] Result<std::shared_ptr<const ModelSpace>> space_of(
+    const Example& example, const Parameters& parameters, Preparations& preparations
+);
 
 // Runs the synthesis, from the start or from a checkpoint of the same task; see the solver's own
 // header for what it ensures and how it fails. The number of threads changes no result.
@@ -80,10 +94,7 @@ struct Preparations {
 );
 
 // What can be said of an example before anything is made of it; see the solver's own header.
-using Analysis = std::variant<discrete::Analysis>;
+using Analysis = std::variant<discrete::Analysis, continuous::Analysis>;
 [[nodiscard]] Result<Analysis> analyse(const Example& example, const std::stop_token& stop);
-
-// A region of the model as a scene, in the whole model's frame.
-[[nodiscard]] Scene make_scene(const Example& example, const Model& model, const Box& region);
 
 }  // namespace modelsynth

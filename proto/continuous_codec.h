@@ -1,0 +1,41 @@
+#pragma once
+
+// Private to proto's sources.
+
+#include "proto/json.h"
+#include "proto/limits.h"
+#include "solver/continuous/parameters.h"
+#include "solver/continuous/reading.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace modelsynth::proto {
+
+// Three numbers of at most that size either way.
+[[nodiscard]] std::optional<continuous::Point> read_point(const Value& value, double extent_max);
+[[nodiscard]] OrderedJson write_point(const continuous::Point& point);
+
+// What stands under `parameters` of a continuous job; faults are noted in the value's list.
+[[nodiscard]] continuous::Parameters read_continuous_parameters(
+    const Value& value, const RequestLimits& limits
+);
+
+// The inverse, every default written out. Requires: defaults filled in.
+[[nodiscard]] OrderedJson write_parameters(const continuous::Parameters& parameters);
+
+// A whole example object of kind "continuous", read to the last figure; null when there are faults.
+[[nodiscard]] std::shared_ptr<const continuous::ExampleReading> read_solids(
+    const Value& value, const RequestLimits& limits
+);
+
+// What a list shows of an example, and what its resource does.
+[[nodiscard]] OrderedJson solids_summary(
+    const continuous::ExampleReading& reading, const std::string& id, bool built_in
+);
+[[nodiscard]] OrderedJson solids_resource(
+    const continuous::ExampleReading& reading, const std::string& id, bool built_in
+);
+
+}  // namespace modelsynth::proto

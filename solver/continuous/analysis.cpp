@@ -1,0 +1,37 @@
+#include "solver/continuous/analysis.h"
+
+#include "solver/continuous/parameters.h"
+#include "solver/continuous/problem.h"
+#include "solver/continuous/spacing.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+namespace modelsynth::continuous {
+
+Analysis analyse(const ExampleReading& reading) {
+    Analysis analysis;
+    const Topes& topes = reading.topes();
+    const Figures& figures = reading.figures();
+    const std::vector<double> free(topes.family_count(), 0);
+    const Spacings spacings = solve_spacings(figures, reading.example().spacing, free);
+    for (std::size_t family = 0; family < topes.family_count(); ++family) {
+        analysis.families.push_back({topes.normals()[family], spacings.of_family[family]});
+    }
+    analysis.figures = figures.count();
+    for (std::size_t label = 0; label < figures.count(); ++label) {
+        const FamilySet relevant = figures.relevant(static_cast<Label>(label));
+        analysis.corner_figures += std::size_t{rank_of(topes, relevant) == 3};
+    }
+    analysis.warnings = spacings.conflicts;
+    if (topes.family_count() > 12) {
+        analysis.warnings.push_back(
+            "the faces of the example have " + std::to_string(topes.family_count()) +
+            " directions; time and memory grow with the cube of their number"
+        );
+    }
+    return analysis;
+}
+
+}  // namespace modelsynth::continuous
