@@ -14,6 +14,8 @@ namespace modelsynth::examples {
 
 // Each of them, made anew.
 [[nodiscard]] continuous::Example make_houses();
+[[nodiscard]] continuous::Example make_plumbing();
+[[nodiscard]] continuous::Example make_roads();
 [[nodiscard]] continuous::Example make_skyscrapers();
 
 }  // namespace modelsynth::examples
