@@ -14,8 +14,8 @@ using continuous::Point;
 
 enum : ObjectId {
     kSea = 1,
-    kLeg,
-    kBeamX,
+    kLeg,  // by the corner of the deck under which it stands
+    kBeamX = kLeg + 4,
     kBeamZ,
     kDeck,
     kCabin,
@@ -34,12 +34,15 @@ void add(Example& example, ObjectId object, const Point& min, const Point& max) 
     example.polyhedra.push_back(box(object, min, max));
 }
 
-// A deck with its corners on legs: legs further in would allow a deck without any, in the air.
+// A deck with its corners on legs: legs further in would allow a deck without any, in the air. Legs
+// are objects of their own for each corner: else one could stand under two at once, and there would
+// be decks that are no wider than a leg.
 void add_deck(Example& example, const Point& min, const Point& max) {
-    for (const double x : {min.x(), max.x() - 1}) {
-        for (const double z : {min.z(), max.z() - 1}) {
-            add(example, kLeg, {x, min.y(), z}, {x + 1, max.y() - 1, z + 1});
-        }
+    for (int corner = 0; corner < 4; ++corner) {
+        const double x = corner % 2 == 0 ? min.x() : max.x() - 1;
+        const double z = corner / 2 == 0 ? min.z() : max.z() - 1;
+        const auto leg = static_cast<ObjectId>(kLeg + corner);
+        add(example, leg, {x, min.y(), z}, {x + 1, max.y() - 1, z + 1});
     }
     add(example, kDeck, {min.x(), max.y() - 1, min.z()}, max);
 }
@@ -97,16 +100,19 @@ Example make_oil_platform() {
         {"lights", color(0xFFF2C0), 0, 0.5F, color(0xFFD870)}};
     example.objects = {
         {"sea", kWater, 0},
-        {"leg", kSteel, 1},
+        {"leg north-west", kSteel, 0.6},
+        {"leg north-east", kSteel, 0.6},
+        {"leg south-west", kSteel, 0.6},
+        {"leg south-east", kSteel, 0.6},
         {"beam east-west", kBrace, 1},
         {"beam north-south", kBrace, 1},
-        {"deck", kPlating, 4},
-        {"cabin", kWhite, 1},
+        {"deck", kPlating, 8},
+        {"cabin", kWhite, 2},
         {"bridge", kWhite, 1},
-        {"landing pad", kGreen, 1},
-        {"derrick", kRed, 1},
+        {"landing pad", kGreen, 2},
+        {"derrick", kRed, 2},
         {"light", kLight, 1},
-        {"mast", kYellow, 1}};
+        {"mast", kYellow, 0.5}};
     for (const char* direction : {"east", "north", "west", "south"}) {
         example.objects.push_back({std::string("jib ") + direction, kYellow, 1});
     }
@@ -134,8 +140,6 @@ Example make_oil_platform() {
     const Point y = Point::UnitY();
     const Point z = Point::UnitZ();
     example.dimensions = {
-        {kLeg, x},
-        {kLeg, z},
         {kBeamX, y},
         {kBeamX, z},
         {kBeamZ, x},
@@ -149,13 +153,18 @@ Example make_oil_platform() {
         {kTip, x},
         {kTip, y},
         {kTip, z}};
+    for (int corner = 0; corner < 4; ++corner) {
+        const auto leg = static_cast<ObjectId>(kLeg + corner);
+        example.dimensions.push_back({leg, x});
+        example.dimensions.push_back({leg, z});
+    }
     for (int turn = 0; turn < 4; ++turn) {
         const auto jib = static_cast<ObjectId>(kJib + turn);
         example.dimensions.push_back({jib, y});
         example.dimensions.push_back({jib, turn % 2 == 0 ? z : x});
     }
     example.spacing = 1;
-    example.density = 0.15;
+    example.density = 0.07;
     example.size = {40, 14, 40};
     return example;
 }

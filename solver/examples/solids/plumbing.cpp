@@ -101,9 +101,9 @@ Example make_plumbing() {
     example.materials = {
         {"concrete", color(0x8D8F8C), 0, 0.95F},
         {"cream paint", color(0xE4DCC4), 0, 0.6F},
-        {"copper", color(0xD08A5B), 0.4F, 0.45F},
-        {"brass", color(0xD9B45A), 0.4F, 0.45F},
-        {"iron", color(0x5C6670), 0.3F, 0.6F},
+        {"copper", color(0xD9915F), 0.1F, 0.5F},
+        {"brass", color(0xE3C06A), 0.1F, 0.5F},
+        {"iron", color(0x66727E), 0.1F, 0.6F},
         {"red paint", color(0xC7372F), 0, 0.5F}};
     example.objects = {{"floor", kConcrete, 0}, {"tank", kPaint, 3}, {"valve", kRed, 1}};
     const auto add_objects =
@@ -112,7 +112,7 @@ Example make_plumbing() {
                 example.objects.push_back({kind + " " + std::to_string(i), material, weight});
             }
         };
-    add_objects("pipe", 3, kCopper, 2);
+    add_objects("pipe", 3, kCopper, 3);
     add_objects("elbow", 6, kBrass, 1);
     add_objects("tee", 3, kIron, 1);
     example.ground = kFloor;
@@ -132,7 +132,7 @@ Example make_plumbing() {
         }
     }
     example.spacing = 1;
-    example.density = 0.05;
+    example.density = 0.03;
     example.size = {30, 14, 30};
     return example;
 }

@@ -128,8 +128,8 @@ Example make_roads() {
         {"tiles", color(0xB5512F)},
         {"leaves", color(0x3E6B35)},
         {"needles", color(0x4F8040)},
-        {"asphalt", color(0x4A4C50)},
-        {"patched asphalt", color(0x5A5B5E)}};
+        {"asphalt", color(0x56585C)},
+        {"patched asphalt", color(0x66686B)}};
     example.objects = {
         {"meadow", kMeadow, 0},
         {"wall", kPlaster, 1},

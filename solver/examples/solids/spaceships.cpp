@@ -13,7 +13,18 @@ using continuous::ObjectId;
 using continuous::Point;
 using continuous::Polyhedron;
 
-enum : ObjectId { kHull = 1, kUpper, kLower, kNose, kBeam, kEngine, kFlame, kFin, kBridge };
+enum : ObjectId {
+    kHull = 1,
+    kUpperEast,
+    kUpperWest,
+    kLower,
+    kNose,
+    kBeam,
+    kEngine,
+    kFlame,
+    kFin,
+    kBridge
+};
 
 enum : std::uint32_t { kGrey, kWhite, kDark, kOrange, kSteel, kIron, kGlow, kRed, kGlass };
 
@@ -45,24 +56,19 @@ void add_plate(
     }
 }
 
-// Sloping armour over and under a plate: everywhere but astern it leans in by as much as it is
-// high.
-void add_armour(Example& example, const Point& at, double width, double length) {
-    for (const bool is_upper : {true, false}) {
-        const double low = is_upper ? at.y() + 1 : at.y() - 1;
-        Polyhedron armour =
-            box(is_upper ? kUpper : kLower,
-                {at.x(), low, at.z()},
-                {at.x() + width, low + 1, at.z() + length});
-        const double leaning = is_upper ? low + 1 : low;
-        for (Point& corner : armour.corners) {
-            if (corner.y() == leaning) {
-                corner.x() += corner.x() == at.x() ? 1 : -1;
-                corner.z() -= corner.z() == at.z() ? 0 : 1;
-            }
+// Sloping armour over or under a plate: it leans in by as much as it is high, but not astern.
+void add_armour(
+    Example& example, ObjectId object, const Point& min, const Point& max, double west, double east
+) {
+    const bool is_upper = object != kLower;
+    Polyhedron armour = box(object, min, max);
+    for (Point& corner : armour.corners) {
+        if (corner.y() == (is_upper ? max : min).y()) {
+            corner.x() += corner.x() == min.x() ? west : -east;
+            corner.z() -= corner.z() == min.z() ? 0 : 1;
         }
-        example.polyhedra.push_back(std::move(armour));
     }
+    example.polyhedra.push_back(std::move(armour));
 }
 
 void add_sloping_along_x(Example& example, ObjectId object, const Point& min, const Point& max) {
@@ -92,19 +98,23 @@ Example make_spaceships() {
         {"fins", color(0xC33B32), 0, 0.5F},
         {"glass", color(0x2B5F8A), 0.1F, 0.2F, color(0x123A5C)}};
     example.objects = {
-        {"hull", kGrey, 1},
-        {"upper armour", kWhite, 1},
-        {"lower armour", kDark, 1},
-        {"bow", kOrange, 1},
-        {"beam", kSteel, 1},
+        {"hull", kGrey, 3},
+        {"upper armour east", kWhite, 2},
+        {"upper armour west", kWhite, 2},
+        {"lower armour", kDark, 2},
+        {"bow", kOrange, 0.4},
+        {"beam", kSteel, 12},
         {"engine", kIron, 1},
         {"flame", kGlow, 1},
-        {"fin", kRed, 1},
-        {"bridge", kGlass, 1}};
+        {"fin", kRed, 0.5},
+        {"bridge", kGlass, 4}};
 
     const Point middle(0, 3, 0);
     add_plate(example, middle, 6, 12, {1, 4});
-    add_armour(example, middle, 6, 12);
+    // In two halves that need each other: no ship is narrower than both.
+    add_armour(example, kUpperWest, {0, 4, 0}, {3, 5, 12}, 1, 0);
+    add_armour(example, kUpperEast, {3, 4, 0}, {6, 5, 12}, 0, 1);
+    add_armour(example, kLower, {0, 2, 0}, {6, 3, 12}, 1, 1);
     add_sloping_along_x(example, kBridge, {2, 5, 3}, {4, 6, 7});
     for (const double x : {-5.0, 9.0}) {
         add_plate(example, {x, 3, 1}, 2, 9, {0});
@@ -120,7 +130,8 @@ Example make_spaceships() {
     const Point z = Point::UnitZ();
     example.dimensions = {
         {kHull, y},
-        {kUpper, y},
+        {kUpperEast, y},
+        {kUpperWest, y},
         {kLower, y},
         {kNose, y},
         {kBeam, y},
@@ -134,7 +145,7 @@ Example make_spaceships() {
         {kBridge, y}};
     example.spacing = 1;
     example.size = {40, 12, 40};
-    example.density = 0.1;
+    example.density = 0.06;
     return example;
 }
 
