@@ -14,6 +14,11 @@ namespace modelsynth::examples {
 
 // Each of them, made anew.
 [[nodiscard]] continuous::Example make_houses();
+[[nodiscard]] continuous::Example make_oil_platform();
+[[nodiscard]] continuous::Example make_plumbing();
+[[nodiscard]] continuous::Example make_roads();
+[[nodiscard]] continuous::Example make_roller_coaster();
 [[nodiscard]] continuous::Example make_skyscrapers();
+[[nodiscard]] continuous::Example make_spaceships();
 
 }  // namespace modelsynth::examples
