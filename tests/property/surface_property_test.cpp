@@ -16,7 +16,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,40 +70,6 @@ void expect_right(const SurfaceChecker& checker, const Reading& reading, const M
     EXPECT_EQ(text(checker.find_faults(make_scene(*reading, model.surface), model.surface)), "");
 }
 
-// What the reader and the checker find in an example, each by its own means, is the same; but what
-// is all one is nothing that the checker looks for.
-void expect_seen(const ExampleReading& reading) {
-    const SurfaceChecker checker(reading.example());
-    const Topes& topes = reading.topes();
-    ASSERT_EQ(checker.cells().count(), checker.cells().expected_count());
-    ASSERT_EQ(checker.cells().count(), topes.count());
-    std::vector<Tope> tope_of;
-    for (std::size_t cell = 0; cell < topes.count(); ++cell) {
-        FamilySet sides = 0;
-        for (std::size_t family = 0; family < topes.family_count(); ++family) {
-            const bool is_positive = topes.normals()[family].dot(checker.cells().inside(cell)) > 0;
-            sides |= is_positive ? FamilySet{1} << family : 0;
-        }
-        tope_of.push_back(topes.tope_of(sides));
-    }
-    const auto is_all_one = [](const std::string& figure) {
-        return figure.find_first_not_of(figure.front()) == std::string::npos;
-    };
-    std::set<std::string> read;
-    for (std::size_t label = 0; label < reading.figures().count(); ++label) {
-        std::string figure;
-        for (const Tope tope : tope_of) {
-            figure.push_back(reading.figures().at(static_cast<Label>(label))[tope]);
-        }
-        if (!is_all_one(figure)) {
-            read.insert(std::move(figure));
-        }
-    }
-    std::set<std::string> seen = checker.figures();
-    std::erase_if(seen, is_all_one);
-    EXPECT_EQ(read, seen);
-}
-
 class SolidsBuiltIn : public ::testing::TestWithParam<std::size_t> {
   protected:
     [[nodiscard]] static Reading reading() { return examples::built_in_solids()[GetParam()]; }
@@ -124,8 +89,6 @@ TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
     }
     EXPECT_GT(polygons, 20U * 10U);
 }
-
-TEST_P(SolidsBuiltIn, AreReadAsTheyAreSeen) { expect_seen(*reading()); }
 
 INSTANTIATE_TEST_SUITE_P(
     Examples,

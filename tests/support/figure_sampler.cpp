@@ -260,23 +260,44 @@ SampledFigure sample_figure(const PolygonSet& set, const ConeCells& cells, const
         std::min((point - clip.min()).minCoeff(), (clip.max() - point).minCoeff());
     const double gap = std::min(around.gap, to_clip);
     figure.is_unclear = gap < 4 * set.frame().tolerance;
-    // Cells that only planes elsewhere cut apart are one.
-    std::map<std::uint64_t, ObjectId> known;
+
+    // Cells that only planes elsewhere cut apart are one, and the direction into it is that which
+    // is farthest from the planes that are here.
+    struct Cone {
+        double clearance = -1;
+        Point direction;
+        ObjectId object = 0;
+    };
+
+    std::map<std::uint64_t, Cone> cones;
     for (std::size_t cell = 0; cell < cells.count(); ++cell) {
-        const auto [at, is_new] = known.try_emplace(cells.sides(cell) & here, ObjectId{0});
-        if (is_new) {
-            const std::vector<int> windings = set.windings(point + gap / 4 * cells.inside(cell));
-            int filled = 0;
-            for (std::size_t solid = 0; solid < windings.size(); ++solid) {
-                if (windings[solid] == 1) {
-                    at->second = set.objects()[solid];
-                    ++filled;
-                }
-                figure.is_inside_out |= windings[solid] != 0 && windings[solid] != 1;
+        double clearance = 1;
+        for (std::size_t family = 0; family < cells.normals().size(); ++family) {
+            if ((here >> family & 1) != 0) {
+                const double slope = cells.normals()[family].dot(cells.inside(cell));
+                clearance = std::min(clearance, std::abs(slope));
             }
-            figure.is_overlap |= filled > 1;
         }
-        figure.objects.push_back(static_cast<char>(at->second));
+        Cone& cone = cones[cells.sides(cell) & here];
+        if (clearance > cone.clearance) {
+            cone.clearance = clearance;
+            cone.direction = cells.inside(cell);
+        }
+    }
+    for (auto& [sides, cone] : cones) {
+        const std::vector<int> windings = set.windings(point + gap / 4 * cone.direction);
+        int filled = 0;
+        for (std::size_t solid = 0; solid < windings.size(); ++solid) {
+            if (windings[solid] == 1) {
+                cone.object = set.objects()[solid];
+                ++filled;
+            }
+            figure.is_inside_out |= windings[solid] != 0 && windings[solid] != 1;
+        }
+        figure.is_overlap |= filled > 1;
+    }
+    for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+        figure.objects.push_back(static_cast<char>(cones.at(cells.sides(cell) & here).object));
     }
     return figure;
 }
