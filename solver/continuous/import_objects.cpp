@@ -1,0 +1,80 @@
+#include "solver/continuous/import_objects.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+
+namespace modelsynth::continuous {
+
+namespace {
+
+constexpr std::size_t kNameBytesMax = 64;
+
+// Whether they look the same; programs number the names of copies.
+bool look_alike(Material a, const Material& b) {
+    a.name = b.name;
+    return a == b;
+}
+
+Error refusal(ErrorCode code, const std::string& name, const std::string& why) {
+    return {code, "object " + quoted(name) + " " + why};
+}
+
+}  // namespace
+
+std::string object_name(const GlbNode& node, const Kit& kit, const Primitive& primitive) {
+    const Extra* extra = node.extras.find("object");
+    const auto* name = extra == nullptr ? nullptr : std::get_if<std::string>(&extra->value);
+    if (name != nullptr && !name->empty()) {
+        return *name;
+    }
+    const std::string& of_material = kit.materials[primitive.material].name;
+    return of_material.empty() ? "object" : of_material;
+}
+
+Result<ObjectId> ImportObjects::number_of(const std::string& name, const Material& material) {
+    const auto found = std::find_if(types_.begin(), types_.end(), [&](const ObjectType& type) {
+        return type.name == name;
+    });
+    if (found != types_.end()) {
+        const Material& first = materials_[found->material];
+        if (!look_alike(first, material)) {
+            return tl::unexpected(refusal(
+                ErrorCode::kInvalidArgument,
+                name,
+                "has material " + quoted(material.name) + " here and another one, " +
+                    quoted(first.name) + ", before"
+            ));
+        }
+        return static_cast<ObjectId>(found - types_.begin() + 1);
+    }
+    if (name.size() > kNameBytesMax) {
+        return tl::unexpected(refusal(ErrorCode::kTooLarge, name, "has too long a name"));
+    }
+    if (types_.size() == kObjectTypesMax) {
+        return tl::unexpected(refusal(
+            ErrorCode::kTooLarge, name, "is one more than " + std::to_string(kObjectTypesMax)
+        ));
+    }
+    const auto same = std::find(materials_.begin(), materials_.end(), material);
+    const auto number = static_cast<std::uint32_t>(same - materials_.begin());
+    if (same == materials_.end()) {
+        materials_.push_back(material);
+    }
+    types_.push_back({name, number});
+    return static_cast<ObjectId>(types_.size());
+}
+
+std::string quoted(const std::string& name) {
+    if (name.size() <= kNameBytesMax) {
+        return "\"" + name + "\"";
+    }
+    std::size_t end = kNameBytesMax;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) {
+        --end;  // within a character
+    }
+    return "\"" + name.substr(0, end) + "...\"";
+}
+
+}  // namespace modelsynth::continuous
