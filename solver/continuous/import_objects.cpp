@@ -11,29 +11,29 @@ namespace {
 
 constexpr std::size_t kNameBytesMax = 64;
 
-// Whether they look the same; programs number the names of copies.
-bool look_alike(Material a, const Material& b) {
-    a.name = b.name;
-    return a == b;
+// Programs number the names of copies.
+bool look_alike(const Material& a, const Material& b) {
+    return a.base_color == b.base_color && a.metallic == b.metallic && a.roughness == b.roughness &&
+           a.emissive == b.emissive && a.double_sided == b.double_sided;
 }
 
-Error refusal(ErrorCode code, const std::string& name, const std::string& why) {
+Error refusal(ErrorCode code, std::string_view name, const std::string& why) {
     return {code, "object " + quoted(name) + " " + why};
 }
 
 }  // namespace
 
-std::string object_name(const GlbNode& node, const Kit& kit, const Primitive& primitive) {
+std::string_view object_name(const GlbNode& node, const Kit& kit, const Primitive& primitive) {
     const Extra* extra = node.extras.find("object");
     const auto* name = extra == nullptr ? nullptr : std::get_if<std::string>(&extra->value);
     if (name != nullptr && !name->empty()) {
         return *name;
     }
     const std::string& of_material = kit.materials[primitive.material].name;
-    return of_material.empty() ? "object" : of_material;
+    return of_material.empty() ? std::string_view("object") : of_material;
 }
 
-Result<ObjectId> ImportObjects::number_of(const std::string& name, const Material& material) {
+Result<ObjectId> ImportObjects::number_of(std::string_view name, const Material& material) {
     const auto found = std::find_if(types_.begin(), types_.end(), [&](const ObjectType& type) {
         return type.name == name;
     });
@@ -62,19 +62,21 @@ Result<ObjectId> ImportObjects::number_of(const std::string& name, const Materia
     if (same == materials_.end()) {
         materials_.push_back(material);
     }
-    types_.push_back({name, number});
+    types_.push_back({std::string(name), number});
     return static_cast<ObjectId>(types_.size());
 }
 
-std::string quoted(const std::string& name) {
+std::string shortened(std::string_view name) {
     if (name.size() <= kNameBytesMax) {
-        return "\"" + name + "\"";
+        return std::string(name);
     }
     std::size_t end = kNameBytesMax;
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) {
         --end;  // within a character
     }
-    return "\"" + name.substr(0, end) + "...\"";
+    return std::string(name.substr(0, end)) + "...";
 }
+
+std::string quoted(std::string_view name) { return "\"" + shortened(name) + "\""; }
 
 }  // namespace modelsynth::continuous

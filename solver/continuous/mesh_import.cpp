@@ -90,13 +90,18 @@ class Importer {
     void refuse_node(std::size_t node, const std::string& detail, bool over_limit = false) {
         refuse(
             "/nodes/" + std::to_string(scene_.nodes[node].number),
-            "node " + quoted(scene_.nodes[node].name) + detail,
+            "node " + quoted(name_of(node)) + detail,
             over_limit
         );
     }
 
     [[nodiscard]] const Mesh& mesh_of(std::size_t node) const {
         return scene_.kit.meshes[scene_.nodes[node].mesh];
+    }
+
+    [[nodiscard]] std::string_view name_of(std::size_t node) const {
+        const std::string& own = scene_.nodes[node].name;
+        return own.empty() ? mesh_of(node).name : own;
     }
 
     [[nodiscard]] std::size_t triangle_count() const {
@@ -280,7 +285,7 @@ class Importer {
             );
         }
         for (TriangleSolid& solid : found.solids) {
-            solid.polyhedron.name = scene_.nodes[soup.node].name;
+            solid.polyhedron.name = shortened(name_of(soup.node));
             solid.polyhedron.object = soup.object;
             Source source = {soup.node, {}};
             for (const std::uint32_t triangle : solid.triangles) {

@@ -131,8 +131,7 @@ class SceneReader {
         if (!mesh) {
             return tl::unexpected(std::move(mesh.error()));
         }
-        const std::string& name = node.name.empty() ? scene_.kit.meshes[*mesh].name : node.name;
-        scene_.nodes.push_back({number, name, *mesh, frame.columns, extra_of(node.extras)});
+        scene_.nodes.push_back({number, node.name, *mesh, frame.columns, extra_of(node.extras)});
         return {};
     }
 

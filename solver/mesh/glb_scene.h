@@ -30,7 +30,7 @@ struct Extra {
 // A node that has a mesh.
 struct GlbNode {
     std::size_t number = 0;  // in the file's list of nodes
-    std::string name;        // that of its mesh when it has none of its own
+    std::string name;        // its own, not that of its mesh
     std::uint32_t mesh = 0;  // index into GlbScene::kit.meshes
     // The node in the scene: where x, y and z of the mesh point, and where its origin is.
     std::array<std::array<double, 3>, 4> frame = {};

@@ -305,6 +305,21 @@ TEST(MeshImport, AnObjectHasOneMaterial) {
     );
 }
 
+TEST(MeshImport, NamesOfAnyLengthAreCutBetweenCharacters) {
+    std::string name;
+    for (int i = 0; i < 100; ++i) {
+        name += "\u00fc\u4e16";
+    }
+    const Corners cube = triangles_of(box(1, {0, 0, 0}, {1, 1, 1}));
+    const auto example = GlbBuilder().node(name, {{0, cube}}).read();
+    ASSERT_TRUE(example);
+    const std::string& cut = example->polyhedra.front().name;
+    EXPECT_EQ(cut, name.substr(0, 62) + "...");
+    GlbBuilder builder;
+    builder.node("A", {{0, cube}}, R"("extras":{"object":")" + name + "\"}");
+    EXPECT_TRUE(contains(builder.faults(), "has too long a name")) << builder.faults();
+}
+
 TEST(MeshImport, ClosedPartsOfAMeshAreSolids) {
     const Corners cube = triangles_of(box(1, {0, 0, 0}, {1, 1, 1}));
     // Apart; at a face; at an edge; at a corner; one in the other.
