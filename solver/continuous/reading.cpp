@@ -1,5 +1,7 @@
 #include "solver/continuous/reading.h"
 
+#include "solver/continuous/check/solid_check.h"
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +53,12 @@ std::optional<std::size_t> ExampleReading::horizontal() const {
 }
 
 Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(Example example) {
+    if (auto faults = find_solid_faults(example); !faults.empty()) {
+        return tl::unexpected(Error{
+            ErrorCode::kInvalidArgument,
+            "the example has polyhedra that are no solids",
+            std::move(faults)});
+    }
     auto families = find_families(example);
     if (!families) {
         return tl::unexpected(std::move(families.error()));

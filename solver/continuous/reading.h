@@ -15,8 +15,9 @@ namespace modelsynth::continuous {
 // An example and what was read from it: all that does not depend on a request. Thread-safe.
 class ExampleReading {
   public:
-    // Fails: as find_families(), Topes::make() and read_figures(); kInvalidArgument when its ground
-    // is bare nowhere, so that nothing could be begun with; kTooLarge.
+    // Fails: kInvalidArgument with all that find_solid_faults() finds, and when its ground is bare
+    // nowhere, so that nothing could be begun with; as find_families(), Topes::make() and
+    // read_figures(); kTooLarge.
     [[nodiscard]] static Result<std::shared_ptr<const ExampleReading>> make(Example example);
 
     ExampleReading(const ExampleReading&) = delete;

@@ -134,7 +134,21 @@ Result<tinygltf::Model> parse_glb(std::span<const std::byte> bytes, const GlbRea
     if (auto fine = check_container(bytes, limits); !fine) {
         return tl::unexpected(std::move(fine.error()));
     }
-    return parse_document(bytes);
+    auto model = parse_document(bytes);
+    if (!model) {
+        return model;
+    }
+    if (!model->extensionsRequired.empty()) {
+        return tl::unexpected(invalid_glb(
+            "requires the extension " + model->extensionsRequired.front() + ", which is not taken"
+        ));
+    }
+    if (model->nodes.size() > limits.nodes_max) {
+        return tl::unexpected(
+            too_large_glb("has more than " + std::to_string(limits.nodes_max) + " nodes")
+        );
+    }
+    return model;
 }
 
 }  // namespace modelsynth

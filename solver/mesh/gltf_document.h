@@ -16,8 +16,9 @@ namespace modelsynth {
 [[nodiscard]] Error invalid_glb(std::string message);
 [[nodiscard]] Error too_large_glb(std::string message);
 
-// The document of a binary glTF file whose container is whole and whose JSON is not too deep. Its
-// indices and ranges are not checked yet, and images are not read.
+// The document of a binary glTF file whose container is whole, whose JSON is not too deep, which
+// requires no extension and has no more nodes than are taken. Its indices and ranges are not
+// checked yet, and images are not read.
 [[nodiscard]] Result<tinygltf::Model> parse_glb(
     std::span<const std::byte> bytes, const GlbReadLimits& limits
 );

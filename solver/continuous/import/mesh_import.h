@@ -1,0 +1,36 @@
+#pragma once
+
+#include "solver/continuous/example.h"
+#include "solver/core/result.h"
+
+#include <cstddef>
+#include <span>
+
+namespace modelsynth::continuous {
+
+// Triangles are merged into fewer faces, so there may be more of them than kFacesMax.
+inline constexpr std::size_t kTrianglesMax = 100'000;
+
+// An example out of a binary glTF 2.0 file: every closed part of a mesh of the scene is a solid.
+//
+// Frame:    that of the scene, so metres, y up, the ground at y = 0.
+// Objects:  "object" in a node's extras is the object type of the whole node. Without it, the name
+// of
+//           the material of each of its primitives is ("object" when that has none), and what is of
+//           different materials must be closed by itself.
+// Ground:   a flat, horizontal node at y = 0 with "ground": true in its extras, or of an object
+// called
+//           "ground", is no solid but says that its object fills all below.
+// Settings: the rest of the example, in the extras of the scene, or else of the asset (see
+//           import_settings.h); the spacing is default_spacing() when none is given.
+// Noise:    corners closer than a millionth of the extent are one, and triangles that lie in a
+// plane
+//           within that are one face, if that face has no hole.
+// Fails:    as read_glb_scene(); kTooLarge; kInvalidArgument with faults whose pointers are of the
+//           file's JSON (/nodes/5) and which name the node and the triangle, counted from 0 over
+//           the primitives of the node's mesh.
+// Ensures:  find_solid_faults() finds nothing.
+// Cost:     O(n log n), the worst that is taken about a second. Thread-safe.
+[[nodiscard]] Result<Example> read_example_glb(std::span<const std::byte> bytes);
+
+}  // namespace modelsynth::continuous
