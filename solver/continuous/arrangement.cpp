@@ -316,6 +316,18 @@ std::int32_t cell_of(double coordinate, double cell, std::int32_t cells) {
 
 }  // namespace
 
+std::size_t Arrangement::plane_through(Site vertex, std::size_t family) const {
+    const PlaneOffsets& offsets = planes_[family];
+    const double offset = topes_->normals()[family].dot(positions_[vertex]);
+    const auto above = std::lower_bound(offsets.begin(), offsets.end(), offset);
+    if (above == offsets.end()) {
+        return offsets.size() - 1;
+    }
+    const auto number = static_cast<std::size_t>(above - offsets.begin());
+    const bool is_below = number > 0 && offset - offsets[number - 1] < *above - offset;
+    return is_below ? number - 1 : number;
+}
+
 Result<Arrangement> Arrangement::make(
     const Topes& topes,
     std::span<const PlaneOffsets> planes,
@@ -378,6 +390,7 @@ Result<Arrangement> Arrangement::make(
     Arrangement made;
     made.topes_ = &topes;
     made.frame_ = frame;
+    made.planes_.assign(planes.begin(), planes.end());
     std::vector<Site> number(order.size());
     made.first_in_cell_.assign(frame.cells.cell_count() + 1, 0);
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -57,6 +57,12 @@ class Arrangement {
         return {edges_.data() + first_edge_[vertex], first_edge_[vertex + 1] - first_edge_[vertex]};
     }
 
+    // The planes of a family, by number.
+    [[nodiscard]] const PlaneOffsets& planes(std::size_t family) const { return planes_[family]; }
+
+    // The number of the family's plane that passes through the vertex. Requires: one does.
+    [[nodiscard]] std::size_t plane_through(Site vertex, std::size_t family) const;
+
     [[nodiscard]] const Frame& frame() const { return frame_; }
 
     // Vertices in a run of cells: first_in(i) ... first_in(j) - 1 lie in the cells i ... j - 1.
@@ -83,6 +89,7 @@ class Arrangement {
 
     const Topes* topes_ = nullptr;
     Frame frame_;
+    std::vector<PlaneOffsets> planes_;
     std::vector<Point> positions_;
     std::vector<FamilySet> families_;
     std::vector<std::uint32_t> first_edge_;

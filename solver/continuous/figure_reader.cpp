@@ -25,6 +25,7 @@ struct Patch {
     std::size_t face = 0;
     std::size_t family = 0;
     double offset = 0;
+    bool is_seen = false;  // a figure was read on it
     Point min = Point::Constant(-std::numeric_limits<double>::infinity());
     Point max = Point::Constant(std::numeric_limits<double>::infinity());
 };
@@ -50,6 +51,7 @@ class Reader {
                 patch.min = solid.corners[solid.faces[f].front()];
                 patch.max = patch.min;
                 for (const std::uint32_t corner : solid.faces[f]) {
+                    farthest_ = farthest_.cwiseMax(solid.corners[corner]);
                     patch.min = patch.min.cwiseMin(solid.corners[corner]);
                     patch.max = patch.max.cwiseMax(solid.corners[corner]);
                 }
@@ -69,7 +71,7 @@ class Reader {
 
     Result<std::vector<Figure>> read() {
         read_corners();
-        read_edges();
+        read_lines();
         read_faces();
         if (is_spent()) {
             return tl::unexpected(Error{
@@ -155,88 +157,121 @@ class Reader {
         }
     }
 
-    // Between any two of those points that follow each other on an edge, and before and after them.
-    void read_edges() {
-        for (const Polyhedron& solid : example_.polyhedra) {
-            std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-            for (const Face& face : solid.faces) {
-                for (std::size_t i = 0; i < face.size(); ++i) {
-                    edges.insert(std::minmax(face[i], face[(i + 1) % face.size()]));
+    // Along every line on which two faces meet, such as the edges of a solid: between any two of
+    // those points that follow each other there, and before and after them.
+    void read_lines() {
+        for (std::size_t a = 0; a < patches_.size(); ++a) {
+            for (std::size_t b = a + 1; b < patches_.size(); ++b) {
+                if (patches_[a].family != patches_[b].family &&
+                    overlap(patches_[a], patches_[b])) {
+                    read_line(patches_[a], patches_[b]);
                 }
-            }
-            for (const auto& [a, b] : edges) {
-                read_edge(solid.corners[a], solid.corners[b]);
+                if (is_spent()) {
+                    return;
+                }
             }
         }
     }
 
-    void read_edge(const Point& a, const Point& b) {
-        const auto part = inside_bounds(a, b);
+    void read_line(const Patch& a, const Patch& b) {
+        const Point& na = topes_.normals()[a.family];
+        const Point& nb = topes_.normals()[b.family];
+        const Point along = na.cross(nb).normalized();
+        Eigen::Matrix3d normals;
+        normals.row(0) = na;
+        normals.row(1) = nb;
+        normals.row(2) = along;
+        const Point base = normals.inverse() * Point(a.offset, b.offset, 0);
+        const auto part = common_part(a, b, base, along);
         if (!part) {
             return;
         }
-        const Point along = b - a;
         std::vector<double> stops = {part->first, part->second};
+        looks_ += corners_.size();
         for (const Point& corner : corners_) {
-            const double t = (corner - a).dot(along) / along.squaredNorm();
+            const double t = (corner - base).dot(along);
             if (t > part->first && t < part->second &&
-                (a + t * along - corner).norm() <= tolerance_) {
+                (base + t * along - corner).norm() <= tolerance_) {
                 stops.push_back(t);
             }
         }
         std::sort(stops.begin(), stops.end());
         for (std::size_t i = 1; i < stops.size(); ++i) {
-            if ((stops[i] - stops[i - 1]) * along.norm() > 16 * tolerance_) {
-                const Point middle = a + (stops[i] + stops[i - 1]) / 2 * along;
-                if (is_in_bounds(middle)) {
-                    read_figure(middle, patches_.front());
-                }
+            const Point middle = base + (stops[i] + stops[i - 1]) / 2 * along;
+            if (stops[i] - stops[i - 1] > 16 * tolerance_ && is_in_bounds(middle) &&
+                distance(a, middle) <= tolerance_ && distance(b, middle) <= tolerance_) {
+                read_figure(middle, a);
             }
         }
     }
 
-    // The part of the segment inside the bounds, as shares of it.
-    [[nodiscard]] std::optional<std::pair<double, double>> inside_bounds(
-        const Point& a, const Point& b
+    // The part of a line in the boxes around two faces and in the bounds.
+    [[nodiscard]] std::optional<std::pair<double, double>> common_part(
+        const Patch& a, const Patch& b, const Point& base, const Point& along
     ) const {
-        double from = 0;
-        double to = 1;
-        for (int axis = 0; example_.bounds && axis < 3; ++axis) {
-            const double step = b[axis] - a[axis];
-            const double low = example_.bounds->min[axis] - a[axis];
-            const double high = example_.bounds->max[axis] - a[axis];
-            if (std::abs(step) < tolerance_) {
-                if (low >= 0 || high <= 0) {
+        Point low = a.min.cwiseMax(b.min).array() - tolerance_;
+        Point high = a.max.cwiseMin(b.max).array() + tolerance_;
+        if (example_.bounds) {
+            low = low.cwiseMax(example_.bounds->min);
+            high = high.cwiseMin(example_.bounds->max);
+        }
+        double from = -std::numeric_limits<double>::infinity();
+        double to = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(along[axis]) < 1e-9) {
+                if (base[axis] < low[axis] || base[axis] > high[axis]) {
                     return std::nullopt;
                 }
                 continue;
             }
-            from = std::max(from, std::min(low / step, high / step));
-            to = std::min(to, std::max(low / step, high / step));
+            const double first = (low[axis] - base[axis]) / along[axis];
+            const double second = (high[axis] - base[axis]) / along[axis];
+            from = std::max(from, std::min(first, second));
+            to = std::min(to, std::max(first, second));
         }
         return from < to ? std::optional(std::pair(from, to)) : std::nullopt;
     }
 
-    // The middle of every face, as far as it is in the bounds: of faces whose edges all lie outside
-    // nothing else tells.
+    // Places on every face that has no line in the bounds, and on the ground, which may have none
+    // where it is bare.
     void read_faces() {
         for (const Patch& patch : patches_) {
+            if (patch.is_seen && patch.solid != kGround) {
+                continue;
+            }
             Point low = patch.min;
             Point high = patch.max;
             if (example_.bounds) {
                 low = low.cwiseMax(example_.bounds->min);
                 high = high.cwiseMin(example_.bounds->max);
+            } else {  // beside all solids
+                low = farthest_ + Point::Constant(extent_ / 2);
+                high = farthest_ + Point::Constant(extent_);
             }
-            Point middle = (low + high) / 2;
-            if (!middle.allFinite()) {
-                continue;  // the ground, which is told by whatever stands on it
-            }
+            constexpr int kPlaces = 5;  // along each axis
             const Point& normal = topes_.normals()[patch.family];
-            middle += normal * (patch.offset - normal.dot(middle));
-            if (is_in_bounds(middle) && distance(patch, middle) <= tolerance_) {
-                read_figure(middle, patch);
+            for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
+                const Point share =
+                    Point(i % kPlaces, i / kPlaces % kPlaces, i / kPlaces / kPlaces).array() + 0.5;
+                Point place = low + (high - low).cwiseProduct(share) / kPlaces;
+                place += normal * (patch.offset - normal.dot(place));
+                if (is_in_bounds(place) && distance(patch, place) <= tolerance_) {
+                    read_figure(place, patch);
+                }
             }
         }
+    }
+
+    // How far the inside of a cell is from the nearest of some planes.
+    [[nodiscard]] double height_inside(Tope tope, FamilySet families) const {
+        double least = 1;
+        for (std::size_t family = 0; family < topes_.family_count(); ++family) {
+            if ((families >> family & 1) != 0) {
+                const double height = std::abs(topes_.normals()[family].dot(topes_.inside(tope)));
+                least = std::min(least, height);
+            }
+        }
+        return least;
     }
 
     // `patch`: to name the place in a fault.
@@ -247,9 +282,10 @@ class Reader {
         }
         FamilySet here = 0;
         double nearest = extent_;
-        for (const Patch& other : patches_) {
+        for (Patch& other : patches_) {
             const double away = distance(other, point);
             if (away <= 4 * tolerance_) {
+                other.is_seen = true;
                 here |= FamilySet{1} << other.family;
             } else {
                 nearest = std::min(nearest, away);
@@ -263,17 +299,30 @@ class Reader {
             );
         }
         const double reach = nearest / 4;
-        std::map<FamilySet, char> known;
-        Figure figure(topes_.count(), '\0');
+        // Of the cells that are one for the planes through the point, the one whose inside is
+        // farthest from them.
+        struct Sample {
+            double height = 0;
+            Tope tope = 0;
+            char object = 0;
+        };
+        std::map<FamilySet, Sample> samples;
         for (std::size_t t = 0; t < topes_.count(); ++t) {
             const auto tope = static_cast<Tope>(t);
-            const auto [at, is_new] = known.try_emplace(topes_.sides(tope) & here, '\0');
-            if (is_new) {
-                looks_ += 20;
-                const Point sample = point + reach * topes_.inside(tope);
-                at->second = static_cast<char>(solids_.at(sample));
+            const double height = height_inside(tope, here);
+            Sample& sample = samples[topes_.sides(tope) & here];
+            if (height > sample.height) {
+                sample = {height, tope, 0};
             }
-            figure[t] = at->second;
+        }
+        for (auto& [sides, sample] : samples) {
+            looks_ += 20;
+            const Point place = point + reach * topes_.inside(sample.tope);
+            sample.object = static_cast<char>(solids_.at(place));
+        }
+        Figure figure(topes_.count(), '\0');
+        for (std::size_t t = 0; t < topes_.count(); ++t) {
+            figure[t] = samples[topes_.sides(static_cast<Tope>(t)) & here].object;
         }
         if (reach < 4 * tolerance_ && patch.solid != kGround) {
             faults_.push_back(
@@ -288,6 +337,7 @@ class Reader {
     const Example& example_;
     const Topes& topes_;
     Solids solids_;
+    Point farthest_ = Point::Zero();  // the solids' largest coordinates
     double extent_;
     double tolerance_;
     std::vector<Patch> patches_;

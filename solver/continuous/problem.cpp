@@ -53,10 +53,14 @@ std::vector<Label> initial_labels(const ExampleReading& reading, const Arrangeme
         const std::size_t family = *reading.horizontal();
         const Label below = figures.find(uniform_figure(topes, *ground));
         const Label bare = figures.find(face_figure(topes, family, *ground, kEmpty));
-        const double near = 1e-6 * arrangement.frame().cell;
-        for (std::size_t site = 0; site < labels.size(); ++site) {
-            const double y = arrangement.position(static_cast<Site>(site)).y();
-            labels[site] = y < -near ? below : y < near ? bare : empty;
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            const auto site = static_cast<Site>(i);
+            const double y = arrangement.position(site).y();
+            // Planes of other families may meet very near to the ground's.
+            const bool is_on_plane = (arrangement.families(site) >> family & 1) != 0;
+            const bool is_on_ground =
+                is_on_plane && std::abs(y) < arrangement.frame().cell * kBelowGround;
+            labels[i] = is_on_ground ? bare : y < 0 ? below : empty;
         }
     }
     return labels;

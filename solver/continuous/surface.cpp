@@ -31,11 +31,11 @@ struct HalfEdge {
     ObjectId object = 0;
     std::uint8_t family = 0;
     bool is_along_normal = true;
-    double offset = 0;  // of the plane
+    std::size_t number = 0;  // of the plane in its family
     Site from = 0;
     Site to = 0;
 
-    [[nodiscard]] auto plane() const { return std::tuple(object, family, is_along_normal, offset); }
+    [[nodiscard]] auto plane() const { return std::tuple(object, family, is_along_normal, number); }
 };
 
 // What a figure along a line says of borders along it.
@@ -170,9 +170,6 @@ class SurfaceBuilder {
     void collect() {
         const Figures& figures = problem_.reading->figures();
         BorderTable borders(figures);
-        // One number for all points of a plane: offsets are rounded to far less than planes lie
-        // apart.
-        const double grain = 1e-6 * arrangement_.frame().cell;
         for (std::size_t i = 0; i < arrangement_.vertex_count(); ++i) {
             const auto site = static_cast<Site>(i);
             for (const ArrangementEdge& edge : arrangement_.edges(site)) {
@@ -184,13 +181,11 @@ class SurfaceBuilder {
                     continue;
                 }
                 for (const Border& border : borders.at(label, edge.heading)) {
-                    const double offset =
-                        topes_.normals()[border.family].dot(arrangement_.position(site));
                     half_edges_.push_back(
                         {border.object,
                          border.family,
                          border.is_along_normal,
-                         std::round(offset / grain) + 0.0,
+                         arrangement_.plane_through(site, border.family),
                          border.is_forth ? site : edge.end,
                          border.is_forth ? edge.end : site}
                     );
@@ -231,7 +226,12 @@ class SurfaceBuilder {
             );
         }
         // Where nothing stands on the ground there are no edges in its plane.
-        half_edges_.push_back({*ground, family, true, 0, kNoSite, kNoSite});
+        const PlaneOffsets& planes = arrangement_.planes(family);
+        ground_plane_ = static_cast<std::size_t>(
+            std::lower_bound(planes.begin(), planes.end(), -1e-9 * arrangement_.frame().cell) -
+            planes.begin()
+        );
+        half_edges_.push_back({*ground, family, true, ground_plane_, kNoSite, kNoSite});
     }
 
     // The half-edges of one plane become loops and the loops polygons.
@@ -241,7 +241,7 @@ class SurfaceBuilder {
         std::vector<std::vector<std::uint32_t>> outers;
         std::vector<std::vector<std::uint32_t>> holes;
         if (ground_ && plane.object == ground_->first && plane.family == ground_->second &&
-            plane.is_along_normal && plane.offset == 0) {
+            plane.is_along_normal && plane.number == ground_plane_) {
             outers.push_back(rim_);
         }
         std::vector<std::uint8_t> is_used(end - first);
@@ -386,6 +386,7 @@ class SurfaceBuilder {
     std::vector<HalfEdge> half_edges_;
     std::vector<std::uint32_t> rim_;                           // the ground's
     std::optional<std::pair<ObjectId, std::uint8_t>> ground_;  // and its plane's family
+    std::size_t ground_plane_ = 0;  // its number
     Surface surface_;
 };
 

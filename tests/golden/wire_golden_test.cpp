@@ -99,7 +99,7 @@ TEST(Golden, Events) {
     text += event_json(6, "snapshot", time + 8, snapshot_fields(to_json(queued_job()))) + "\n";
     text += event_json(7, "block", time + 9, block_fields(accepted, 1)) + "\n";
     const std::string result = to_json(JobResult{
-        "x", 123, std::string(64, 'b'), {{{1}, 0, 0}, 0.5}, 0.5, {1, 2, 3}, {{1, 99}}});
+        "x", 123, std::string(64, 'b'), {{{1}, 0, 0}, 0.5}, 0.5, {1, 2, 3}, true, {{1, 99}}});
     text += event_json(8, "alternative", time + 10, alternative_fields({2, 1, 99, result, {}, {}}));
     text += "\n";
     text +=
@@ -127,13 +127,17 @@ TEST(Golden, Problems) {
 TEST(Golden, ExamplesAndSolvers) {
     const auto upload = parse_example(kLine, {});
     ASSERT_TRUE(upload);
-    const Model model = {{2, 2, 1}, {1, 2, 0, kNoLabel}};
+    discrete::Parameters parameters;
+    parameters.size = {2, 2, 1};
+    Preparations preparations;
+    const Model model = {
+        space_of(upload->example, parameters, preparations).value(), {1, 2, 0, kNoLabel}};
     expect_golden(
         "examples.txt",
         upload->canonical + "\n" + example_summary(upload->example, "line-1", false) + "\n" +
             example_resource(upload->example, "line-1", false) + "\n" +
             labels_json(upload->example, model) + "\n" + solver_list_json() + "\n" +
-            solver_json("discrete") + "\n"
+            solver_json("discrete") + "\n" + solver_json("continuous") + "\n"
     );
 }
 

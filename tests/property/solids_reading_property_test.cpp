@@ -95,7 +95,7 @@ Example make_example(std::vector<Polyhedron> solids) {
 }
 
 // A wall that goes through a floor, both beyond the bounds: where they meet is an edge of neither.
-TEST(SolidsReading, DISABLED_SeesWhereFacesCrossThatEndBeyondTheBounds) {
+TEST(SolidsReading, SeesWhereFacesCrossThatEndBeyondTheBounds) {
     Example example = make_example(
         {box(2, {-9, -9, -9}, {9, 1, 9}),
          box(3, {1, -9, -9}, {2, 3, 9}),
@@ -106,7 +106,7 @@ TEST(SolidsReading, DISABLED_SeesWhereFacesCrossThatEndBeyondTheBounds) {
 }
 
 // The ground is bare all over.
-TEST(SolidsReading, DISABLED_SeesTheGroundBelowWhatFloats) {
+TEST(SolidsReading, SeesTheGroundBelowWhatFloats) {
     Example example = make_example({box(2, {2, 1, 0}, {3, 2, 2})});
     example.ground = ObjectId{1};
     const auto reading = ExampleReading::make(example);
@@ -117,16 +117,14 @@ TEST(SolidsReading, DISABLED_SeesTheGroundBelowWhatFloats) {
 // Every vertex may be what the initial model has there; else synthesise() takes a block for
 // impossible. Where planes of nearly equal slopes meet, vertices come within a millionth of the
 // ground's top without being on it.
-TEST(SolidsReading, DISABLED_BeginsWithWhatVerticesMayBe) {
+TEST(SolidsReading, BeginsWithWhatVerticesMayBe) {
     for (const std::uint32_t seed : {277U, 444U, 1011U}) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const auto reading = ExampleReading::make(make_random_solids(SolidsKind::kSlivers, seed));
         const Figures& figures = (*reading)->figures();
         Parameters parameters;
         parameters.size = {4, 3, 4};
-        parameters.spacing = 1;
-        parameters.blocks = std::optional<Blocks>(Blocks());
-        parameters.density = 0.5;
+        parameters = fill_defaults(parameters, (*reading)->example());
         const Problem problem = make_problem(*reading, parameters).value();
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < problem.arrangement.vertex_count(); ++i) {

@@ -38,10 +38,7 @@ Eigen::AlignedBox3d box_of(const Problem& problem) {
 Parameters parameters_of(const Example& example, const std::array<double, 3>& size) {
     Parameters parameters;
     parameters.size = size;
-    parameters.spacing = example.spacing;
-    parameters.blocks = std::optional<Blocks>(Blocks());
-    parameters.density = example.density;
-    return parameters;
+    return fill_defaults(parameters, example);
 }
 
 struct Model {

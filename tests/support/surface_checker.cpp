@@ -168,6 +168,10 @@ SurfaceChecker::SurfaceChecker(Example example)
     for (const Point& point : find_special_points(solids, true)) {
         figures_.insert(sample_figure(solids, cells_, point).objects);
     }
+    if (example_.ground && !example_.bounds) {  // which is bare beside all solids
+        const double far = solids.frame().clip.max().cwiseAbs().maxCoeff();
+        figures_.insert(sample_figure(solids, cells_, Point(0.9 * far, 0, 0.9 * far)).objects);
+    }
 }
 
 ModelFaults SurfaceChecker::find_faults(
