@@ -13,7 +13,13 @@ namespace modelsynth::examples {
 );
 
 // Each of them, made anew.
+[[nodiscard]] continuous::Example make_arches();
+[[nodiscard]] continuous::Example make_buildings();
+[[nodiscard]] continuous::Example make_fractals();
 [[nodiscard]] continuous::Example make_houses();
+[[nodiscard]] continuous::Example make_pentagons();
 [[nodiscard]] continuous::Example make_skyscrapers();
+[[nodiscard]] continuous::Example make_stairs();
+[[nodiscard]] continuous::Example make_terrain();
 
 }  // namespace modelsynth::examples

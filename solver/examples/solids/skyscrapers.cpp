@@ -1,22 +1,136 @@
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
 
+#include <array>
+#include <string>
+
 namespace modelsynth::examples {
 
-// A tower with a lower wing: one concave edge is enough for setbacks (thesis, Figure 4.28).
-continuous::Example make_skyscrapers() {
-    enum : continuous::ObjectId { kStreet = 1, kTower };
+namespace {
 
-    continuous::Example example;
+using continuous::Example;
+using continuous::ObjectId;
+using continuous::Point;
+
+// Corners are objects of their own, opposite ones the same: so none stands alone, and buildings are
+// three spacings wide at least. Their weight is low: long walls are likelier than corners.
+enum : ObjectId {
+    kStreet = 1,
+    kStone,
+    kSlab,
+    kRibbon,
+    kGlass,
+    kPlant,
+    kPiers,
+    kColumns = kPiers + 2,
+    kEdges = kColumns + 2
+};
+
+constexpr double kCornerWeight = 0.5;
+
+struct Plan {
+    double x0, z0, x1, z1;
+};
+
+// A plan without a square at each of its corners, from y0 to y1.
+void add_body(Example& example, ObjectId body, const Plan& p, double y0, double y1) {
+    const Outline outline = {
+        {p.x0 + 1, -p.z1},
+        {p.x1 - 1, -p.z1},
+        {p.x1 - 1, -p.z1 + 1},
+        {p.x1, -p.z1 + 1},
+        {p.x1, -p.z0 - 1},
+        {p.x1 - 1, -p.z0 - 1},
+        {p.x1 - 1, -p.z0},
+        {p.x0 + 1, -p.z0},
+        {p.x0 + 1, -p.z0 - 1},
+        {p.x0, -p.z0 - 1},
+        {p.x0, -p.z1 + 1},
+        {p.x0 + 1, -p.z1 + 1}};
+    example.polyhedra.push_back(prism_upwards(body, outline, y0, y1));
+}
+
+void add_corners(Example& example, ObjectId first, const Plan& p, double y0, double y1) {
+    for (const bool east : {false, true}) {
+        for (const bool south : {false, true}) {
+            const auto corner = static_cast<ObjectId>(first + (east != south ? 1 : 0));
+            const double x = east ? p.x1 - 1 : p.x0;
+            const double z = south ? p.z1 - 1 : p.z0;
+            example.polyhedra.push_back(box(corner, {x, y0, z}, {x + 1, y1, z + 1}));
+        }
+    }
+}
+
+// A solid part of a building, ...
+void add_block(
+    Example& example, ObjectId body, ObjectId corners, const Plan& plan, double y0, double y1
+) {
+    add_body(example, body, plan, y0, y1);
+    add_corners(example, corners, plan, y0, y1);
+}
+
+// ... and one of storeys, of which the first and the last are slabs.
+void add_storeys(Example& example, const Plan& plan, int y0, int y1) {
+    for (int y = y0; y < y1; ++y) {
+        add_body(example, y % 2 == 0 ? kSlab : kRibbon, plan, y, y + 1);
+    }
+    add_corners(example, kColumns, plan, y0, y1);
+}
+
+void add_corner_objects(Example& example, const std::string& name, std::uint32_t material) {
+    for (const char* side : {" a", " b"}) {
+        const auto object = static_cast<ObjectId>(example.objects.size() + 1);
+        example.objects.push_back({name + side, material, kCornerWeight});
+        example.dimensions.push_back({object, Point::UnitX()});
+        example.dimensions.push_back({object, Point::UnitZ()});
+    }
+}
+
+}  // namespace
+
+// Three ways to build high: stone with piers at the corners, ribbons of windows between slabs, and
+// glass. Towers stand on wider feet, flush with them and set back, for setbacks of every kind
+// (thesis, Figure 4.28).
+continuous::Example make_skyscrapers() {
+    Example example;
     example.name = "skyscrapers";
     example.title = "Skyscrapers";
-    example.description = "Towers with wings and setbacks.";
-    example.materials = {{"street", color(0x5A5D60)}, {"tower", color(0xB9C2C9)}};
-    example.objects = {{"street", 0}, {"tower", 1}};
+    example.description = "A downtown of stone, ribbon windows and glass, with wings and setbacks.";
+    example.materials = {
+        {"street", color(0x4A4D52)},
+        {"stone", color(0xA9714B)},
+        {"pier", color(0xD8B48C)},
+        {"concrete", color(0xD9D4C7)},
+        {"windows", color(0x2F4454), 0.2F, 0.35F},
+        {"glass", color(0x4F8CA6), 0.3F, 0.3F},
+        {"plant", color(0x6F757A)}};
+    example.objects = {
+        {"street", 0},
+        {"stone", 1},
+        {"slab", 3, 0.6},
+        {"ribbon", 4, 3},
+        {"glass", 5},
+        {"plant", 6}};
+    add_corner_objects(example, "pier", 2);
+    add_corner_objects(example, "column", 3);
+    add_corner_objects(example, "edge", 5);
     example.ground = kStreet;
-    example.polyhedra = {box(kTower, {0, 0, 0}, {4, 3, 2}), box(kTower, {0, 0, 2}, {2, 2, 4})};
+    add_block(example, kStone, kPiers, {0, 0, 8, 8}, 0, 2);
+    add_block(example, kStone, kPiers, {0, 0, 4, 4}, 2, 6);
+    add_block(example, kStone, kPiers, {10, 0, 18, 8}, 0, 2);
+    add_block(example, kStone, kPiers, {14, 4, 18, 8}, 2, 6);
+    add_storeys(example, {0, 10, 8, 18}, 0, 3);
+    add_storeys(example, {0, 14, 4, 18}, 3, 7);
+    add_block(example, kGlass, kEdges, {10, 10, 17, 18}, 0, 2);
+    add_block(example, kGlass, kEdges, {10, 12, 14, 16}, 2, 6);
+    for (const Point& roof : {Point(1, 7, 15), Point(11, 6, 13)}) {
+        example.polyhedra.push_back(box(kPlant, roof, roof + Point(2, 1, 2)));
+    }
+    for (const ObjectId object : {kSlab, kRibbon, kPlant}) {
+        example.dimensions.push_back({object, Point::UnitY()});
+    }
     example.spacing = 1;
-    example.size = {40, 12, 40};
+    example.size = {48, 16, 48};
     return example;
 }
 
