@@ -123,7 +123,8 @@ continuous::Example make_arches() {
         example.dimensions.push_back({pillar, Point::UnitZ()});
     }
     example.spacing = 1;
-    example.size = {40, 14, 40};
+    example.size = {36, 12, 36};
+    example.density = 0.2;
     return example;
 }
 

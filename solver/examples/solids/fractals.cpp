@@ -2,6 +2,8 @@
 #include "solver/examples/solids/shapes.h"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 namespace modelsynth::examples {
 
@@ -11,14 +13,22 @@ using continuous::ObjectId;
 using continuous::Point;
 using continuous::Polyhedron;
 
-constexpr std::array<std::array<double, 3>, 4> kCorners = {
-    {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}};
+// Corners of a regular tetrahedron that stands on a face and is 1 high.
+const std::array<Point, 4>& corners() {
+    static const double edge = std::sqrt(1.5);
+    static const std::array<Point, 4> at = {
+        Point(0, 0, 0),
+        Point(edge, 0, 0),
+        Point(edge / 2, 0, edge * std::sqrt(0.75)),
+        Point(edge / 2, 1, edge * std::sqrt(0.75) / 3)};
+    return at;
+}
 
-Polyhedron tetrahedron(ObjectId object, const Point& at, double size) {
+Polyhedron tetrahedron(ObjectId object, const Point& at, double height) {
     Polyhedron solid;
     solid.object = object;
-    for (const auto& [x, y, z] : kCorners) {
-        solid.corners.push_back(at + size * Point(x, y, z));
+    for (const Point& corner : corners()) {
+        solid.corners.push_back(at + height * corner);
     }
     solid.faces = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
     return solid;
@@ -26,11 +36,10 @@ Polyhedron tetrahedron(ObjectId object, const Point& at, double size) {
 
 }  // namespace
 
-// The first step of a Sierpinski tetrahedron: four tetrahedra that touch at their corners (thesis,
-// Figure 4.29).
+// Two steps of a Sierpinski tetrahedron: tetrahedra that touch at their corners (thesis, Figure
+// 4.29). All four planes meet where two of them touch. The colour tells the place within four: so
+// they come in fours, and a four ends, or touches another one, at its own corners.
 continuous::Example make_fractals() {
-    enum : ObjectId { kFirst = 1 };
-
     continuous::Example example;
     example.name = "fractals";
     example.title = "Fractals";
@@ -40,15 +49,16 @@ continuous::Example make_fractals() {
         {"coral", color(0xD65A4A)},
         {"teal", color(0x2F8F8B)},
         {"indigo", color(0x3C4A8C)}};
-    example.objects = {{"gold", 0}, {"coral", 1}, {"teal", 2}, {"indigo", 3}};
-    for (ObjectId i = 0; i < 4; ++i) {
-        const auto& [x, y, z] = kCorners[i];
-        example.polyhedra.push_back(
-            tetrahedron(static_cast<ObjectId>(kFirst + i), 2 * Point(x, y, z), 2)
-        );
+    example.objects = {{"gold", 0, 2}, {"coral", 1, 2}, {"teal", 2, 2}, {"indigo", 3, 2}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            const auto object = static_cast<ObjectId>(1 + j);
+            example.polyhedra.push_back(tetrahedron(object, 2 * corners()[i] + corners()[j], 1));
+        }
     }
     example.spacing = 1;
-    example.size = {16, 16, 16};
+    example.size = {20, 20, 20};
+    example.density = 0.2;
     return example;
 }
 

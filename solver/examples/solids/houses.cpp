@@ -25,8 +25,8 @@ enum : ObjectId {
     kDoor,
     kChimney,
     kPot,
-    kQuoinA,
-    kQuoinB
+    kCornerA,
+    kCornerB
 };
 
 constexpr ObjectId kLayers[] = {kPlinth, kStone, kSill, kPlaster};
@@ -49,8 +49,9 @@ void add_walls(Blocks& blocks, const Wing& wing) {
     }
 }
 
-// Opposite ones are the same object: so none stands alone, and a house has room for a door.
-void add_quoins(Blocks& blocks, const Wing& wing) {
+// The corners of a plinth are objects, opposite ones the same: so none stands alone, and a house
+// has room for a door. Their weight is low: long walls are likelier than corners.
+void add_corner_stones(Blocks& blocks, const Wing& wing) {
     for (const bool east : {false, true}) {
         for (const bool south : {false, true}) {
             const bool is_inside = wing.ridge == Ridge::kAlongX
@@ -59,9 +60,7 @@ void add_quoins(Blocks& blocks, const Wing& wing) {
             const double x = east ? wing.x1 - 1 : wing.x0;
             const double z = south ? wing.z1 - 1 : wing.z0;
             if (!is_inside) {
-                blocks.add(
-                    east == south ? kQuoinA : kQuoinB, {x, 0, z}, {x + 1, 2.0 * wing.storeys, z + 1}
-                );
+                blocks.add(east == south ? kCornerA : kCornerB, {x, 0, z}, {x + 1, 1, z + 1});
             }
         }
     }
@@ -109,12 +108,12 @@ continuous::Example make_houses() {
         {"plaster", 2},
         {"attic", 2},
         {"roof", 3},
-        {"window", 4},
+        {"window", 4, 3},
         {"door", 5},
         {"chimney", 6},
-        {"pot", 4},
-        {"quoin a", 1, 0.6},
-        {"quoin b", 1, 0.6}};
+        {"pot", 5},
+        {"corner a", 1, 0.6},
+        {"corner b", 1, 0.6}};
     example.ground = kGrass;
     const std::vector<Wing> wings = {// A cross of two storeys.
                                      {6, 0, 10, 16, 2, Ridge::kAlongZ},
@@ -129,7 +128,7 @@ continuous::Example make_houses() {
         add_walls(blocks, wing);
     }
     for (const Wing& wing : wings) {
-        add_quoins(blocks, wing);
+        add_corner_stones(blocks, wing);
     }
     // Doors and windows in each of the four walls' directions.
     const auto window = [&](double x, double y, double z) {
@@ -173,15 +172,23 @@ continuous::Example make_houses() {
     for (const Wing& wing : wings) {
         add_roof(example, wing, kAttic, 1);
     }
+    // A chimney next to the ridge of either direction.
+    for (const Point& foot : {Point(7, 5, 12), Point(2, 5, 8)}) {
+        example.polyhedra.push_back(box(kChimney, foot, foot + Point(1, 1, 1)));
+        example.polyhedra.push_back(box(kPot, foot + Point(0, 1, 0), foot + Point(1, 2, 1)));
+    }
     for (const ObjectId layer : kLayers) {
         example.dimensions.push_back({layer, Point::UnitY()});
     }
-    for (const ObjectId cube : {kWindow, kDoor, kQuoinA, kQuoinB}) {
+    example.dimensions.push_back({kChimney, Point::UnitY()});
+    example.dimensions.push_back({kPot, Point::UnitY()});
+    for (const ObjectId cube : {kWindow, kDoor, kChimney, kPot, kCornerA, kCornerB}) {
         example.dimensions.push_back({cube, Point::UnitX()});
         example.dimensions.push_back({cube, Point::UnitZ()});
     }
     example.spacing = 1;
     example.size = {36, 10, 36};
+    example.density = 0.25;
     return example;
 }
 

@@ -12,7 +12,7 @@ namespace {
 using continuous::ObjectId;
 using continuous::Point;
 
-enum : ObjectId { kPaving = 1, kWall, kRoof, kPilaster };
+enum : ObjectId { kPaving = 1, kPlinth, kWall, kRoof, kCorner };
 
 constexpr int kSides = 5;
 
@@ -39,29 +39,31 @@ struct Pentagon {
     }
 };
 
-void add_tower(continuous::Example& example, const Pentagon& plan, double y0, double y1) {
+void add_tower(continuous::Example& example, const Pentagon& plan, double height) {
     Outline whole;
-    Outline body;
+    Outline plinth;
     for (int side = 0; side < kSides; ++side) {
         const auto outer = plan.corner(side, 0, 0);
         const auto before = plan.corner(side, 0, 1);
         const auto within = plan.corner(side, 1, 1);
         const auto after = plan.corner(side, 1, 0);
         whole.push_back(outer);
-        body.insert(body.end(), {before, within, after});
+        plinth.insert(plinth.end(), {before, within, after});
         example.polyhedra.push_back(prism_upwards(
-            static_cast<ObjectId>(kPilaster + side), {within, before, outer, after}, y0, y1
+            static_cast<ObjectId>(kCorner + side), {within, before, outer, after}, 0, 1
         ));
     }
-    example.polyhedra.push_back(prism_upwards(kWall, body, y0, y1));
-    example.polyhedra.push_back(prism_upwards(kRoof, whole, y1, y1 + 1));
+    example.polyhedra.push_back(prism_upwards(kPlinth, plinth, 0, 1));
+    example.polyhedra.push_back(prism_upwards(kWall, whole, 1, height));
+    example.polyhedra.push_back(prism_upwards(kRoof, whole, height, height + 1));
 }
 
 }  // namespace
 
 // Pentagonal towers of different heights that grow into each other (thesis, Figure 4.34). Only
-// three faces meet anywhere, so that the golden ratio does no harm. A pilaster at each corner has
-// a low weight: long walls are likelier than corners.
+// three faces meet anywhere, so that the golden ratio does no harm. The corners of a
+// plinth are objects, so that towers are a few spacings wide; their weight is low: long walls are
+// likelier than corners.
 continuous::Example make_pentagons() {
     continuous::Example example;
     example.name = "pentagons";
@@ -70,27 +72,28 @@ continuous::Example make_pentagons() {
     example.materials = {
         {"paving", color(0x8C8478)},
         {"wall", color(0xC98A5B)},
-        {"pilaster", color(0xEBDDC3)},
+        {"plinth", color(0xEBDDC3)},
         {"roof", color(0x2F6F73)}};
-    example.objects = {{"paving", 0}, {"wall", 1}, {"roof", 3}};
+    example.objects = {{"paving", 0}, {"plinth", 2}, {"wall", 1}, {"roof", 3}};
     example.ground = kPaving;
-    add_tower(example, {0, 0, 4, 1}, 0, 2);
-    add_tower(example, {4.5, 2, 3, -1}, 0, 5);
-    add_tower(example, {-5, 1.5, 3, -1}, 0, 4);
-    add_tower(example, {14, 0, 3, -1}, 0, 2);
-    example.dimensions = {{kRoof, Point::UnitY()}};
+    add_tower(example, {0, 0, 4, 1}, 2);
+    add_tower(example, {4.5, 2, 3, -1}, 5);
+    add_tower(example, {-5, 1.5, 3, -1}, 4);
+    add_tower(example, {14, 0, 3, -1}, 2);
+    example.dimensions = {{kPlinth, Point::UnitY()}, {kRoof, Point::UnitY()}};
     // One spacing wide across the normals of its two walls, and of no other.
     for (int side = 0; side < kSides; ++side) {
-        example.objects.push_back({"pilaster " + std::to_string(side + 1), 2, 0.5});
+        example.objects.push_back({"corner " + std::to_string(side + 1), 2, 0.5});
         for (const int wall : {side, side + 1}) {
             const double angle = Pentagon{0, 0, 1, 1}.angle(wall);
             example.dimensions.push_back(
-                {static_cast<ObjectId>(kPilaster + side), {std::cos(angle), 0, -std::sin(angle)}}
+                {static_cast<ObjectId>(kCorner + side), {std::cos(angle), 0, -std::sin(angle)}}
             );
         }
     }
     example.spacing = 1;
-    example.size = {30, 10, 30};
+    example.size = {34, 8, 34};
+    example.density = 0.45;
     return example;
 }
 

@@ -3,37 +3,75 @@
 
 namespace modelsynth::examples {
 
-// Islands: beaches of sand, rock that rises in slopes and cliffs, turf on its terraces (thesis,
-// Figure 4.30). All slopes are at 45 degrees.
-continuous::Example make_terrain() {
-    enum : continuous::ObjectId { kWater = 1, kSand, kRock, kTurf };
+namespace {
 
-    continuous::Example example;
+using continuous::Example;
+using continuous::ObjectId;
+using continuous::Point;
+
+enum : ObjectId { kWater = 1, kSand, kRock, kTurf, kPeak };
+
+struct Plan {
+    double x0, z0, x1, z1;
+
+    [[nodiscard]] Plan inner(double inset) const {
+        return {x0 + inset, z0 + inset, x1 - inset, z1 - inset};
+    }
+};
+
+// A layer one spacing high; its sides lean inwards at 45 degrees, or it is a cliff.
+void add_slope(Example& example, ObjectId object, const Plan& p, double y) {
+    example.polyhedra.push_back(
+        tapered(object, {p.x0, y, p.z0}, {p.x1, y + 1, p.z1}, {1, 1, 1, 1})
+    );
+}
+
+void add_cliff(Example& example, const Plan& p, double y) {
+    example.polyhedra.push_back(box(kRock, {p.x0, y, p.z0}, {p.x1, y + 1, p.z1}));
+}
+
+// A cliff and the turf on it: the step of which all islands are made.
+void add_terrace(Example& example, const Plan& plan, double y) {
+    add_cliff(example, plan, y);
+    add_slope(example, kTurf, plan, y + 1);
+}
+
+}  // namespace
+
+// Islands of terraces: beaches, cliffs, green slopes over them, bare peaks (thesis, Figure 4.30).
+// Every layer is one spacing high and grows narrower where it slopes, so heights need breadth.
+// Where a slope begins at a cliff's edge three planes meet along a line, so that all of them stand
+// on a grid.
+continuous::Example make_terrain() {
+    Example example;
     example.name = "terrain";
     example.title = "Rocky terrain";
     example.description = "Islands with beaches, cliffs and green terraces.";
     example.materials = {
-        {"water", color(0x3E86A0), 0.1F, 0.3F},
-        {"sand", color(0xE3CF9B)},
-        {"rock", color(0x8C8279)},
-        {"turf", color(0x7C9C4B)}};
-    example.objects = {{"water", 0}, {"sand", 1}, {"rock", 2}, {"turf", 3}};
+        {"water", color(0x2F7C98), 0.1F, 0.3F},
+        {"sand", color(0xE0C88F)},
+        {"rock", color(0x7D7268)},
+        {"turf", color(0x6F9444)},
+        {"bare rock", color(0x9A9087)}};
+    example.objects = {{"water", 0}, {"sand", 1}, {"rock", 2}, {"turf", 3}, {"peak", 4}};
     example.ground = kWater;
-    example.polyhedra = {
-        tapered(kSand, {0, 0, 0}, {20, 1, 18}, {1, 1, 1, 1}),
-        tapered(kSand, {8, 0, 8}, {28, 1, 26}, {1, 1, 1, 1}),
-        // A hill, ...
-        tapered(kRock, {2, 1, 2}, {14, 4, 12}, {3, 3, 3, 3}),
-        tapered(kTurf, {5, 4, 5}, {11, 5, 9}, {1, 1, 1, 1}),
-        // ... and one with cliffs to two sides, and an outcrop.
-        tapered(kRock, {12, 1, 10}, {24, 3, 22}, {2, 0, 2, 0}),
-        tapered(kTurf, {14, 3, 12}, {24, 4, 22}, {1, 0, 1, 0}),
-        tapered(kRock, {16, 4, 14}, {21, 6, 19}, {0, 2, 0, 2}),
-    };
-    example.dimensions = {{kSand, {0, 1, 0}}, {kTurf, {0, 1, 0}}};
+    // An island in the shape of a cross, with terraces flush with the ends of two arms ...
+    for (const Plan& arm : {Plan{0, 7, 22, 15}, Plan{7, 0, 15, 22}}) {
+        add_slope(example, kSand, arm, 0);
+        add_terrace(example, arm.inner(1), 1);
+    }
+    add_terrace(example, {2, 9, 8, 13}, 3);
+    add_terrace(example, {9, 15, 13, 20}, 3);
+    // ... and one of cliffs, with a terrace set back and one flush with the other sides.
+    add_terrace(example, {26, 0, 42, 16}, 0);
+    add_terrace(example, {30, 5, 41, 15}, 2);
+    add_slope(example, kPeak, {33, 8, 38, 12}, 4);
+    for (const ObjectId layer : {kSand, kRock, kTurf, kPeak}) {
+        example.dimensions.push_back({layer, Point::UnitY()});
+    }
     example.spacing = 1;
     example.size = {40, 10, 40};
-    example.density = 0.6;
+    example.density = 0.5;
     return example;
 }
 
