@@ -21,6 +21,8 @@ enum : ObjectId {
     kRibbon,
     kGlass,
     kPlant,
+    kCap,
+    kCrown,
     kPiers,
     kColumns = kPiers + 2,
     kEdges = kColumns + 2
@@ -61,15 +63,18 @@ void add_corners(Example& example, ObjectId first, const Plan& p, double y0, dou
     }
 }
 
-// A solid part of a building, ...
+// A solid part of a building under a cap; caps have a low weight, so that towers are high.
 void add_block(
     Example& example, ObjectId body, ObjectId corners, const Plan& plan, double y0, double y1
 ) {
     add_body(example, body, plan, y0, y1);
     add_corners(example, corners, plan, y0, y1);
+    example.polyhedra.push_back(
+        box(body == kStone ? kCap : kCrown, {plan.x0, y1, plan.z0}, {plan.x1, y1 + 1, plan.z1})
+    );
 }
 
-// ... and one of storeys, of which the first and the last are slabs.
+// A part of storeys, of which the first and the last are slabs.
 void add_storeys(Example& example, const Plan& plan, int y0, int y1) {
     for (int y = y0; y < y1; ++y) {
         add_body(example, y % 2 == 0 ? kSlab : kRibbon, plan, y, y + 1);
@@ -98,39 +103,39 @@ continuous::Example make_skyscrapers() {
     example.description = "A downtown of stone, ribbon windows and glass, with wings and setbacks.";
     example.materials = {
         {"street", color(0x4A4D52)},
-        {"stone", color(0xA9714B)},
+        {"stone", color(0x9C6240)},
         {"pier", color(0xD8B48C)},
         {"concrete", color(0xD9D4C7)},
         {"windows", color(0x2F4454), 0.2F, 0.35F},
-        {"glass", color(0x4F8CA6), 0.3F, 0.3F},
-        {"plant", color(0x6F757A)}};
+        {"glass", color(0x3F7690), 0.3F, 0.3F},
+        {"plant", color(0x3E464E)}};
     example.objects = {
         {"street", 0},
         {"stone", 1},
-        {"slab", 3, 0.6},
-        {"ribbon", 4, 3},
+        {"slab", 3},
+        {"ribbon", 4, 2.5},
         {"glass", 5},
-        {"plant", 6}};
+        {"plant", 6},
+        {"cap", 2, 0.4},
+        {"crown", 6, 0.4}};
     add_corner_objects(example, "pier", 2);
     add_corner_objects(example, "column", 3);
     add_corner_objects(example, "edge", 5);
     example.ground = kStreet;
     add_block(example, kStone, kPiers, {0, 0, 8, 8}, 0, 2);
-    add_block(example, kStone, kPiers, {0, 0, 4, 4}, 2, 6);
+    add_block(example, kStone, kPiers, {0, 0, 4, 4}, 3, 6);
     add_block(example, kStone, kPiers, {10, 0, 18, 8}, 0, 2);
-    add_block(example, kStone, kPiers, {14, 4, 18, 8}, 2, 6);
+    add_block(example, kStone, kPiers, {14, 4, 18, 8}, 3, 6);
     add_storeys(example, {0, 10, 8, 18}, 0, 3);
     add_storeys(example, {0, 14, 4, 18}, 3, 7);
-    add_block(example, kGlass, kEdges, {10, 10, 17, 18}, 0, 2);
-    add_block(example, kGlass, kEdges, {10, 12, 14, 16}, 2, 6);
-    for (const Point& roof : {Point(1, 7, 15), Point(11, 6, 13)}) {
-        example.polyhedra.push_back(box(kPlant, roof, roof + Point(2, 1, 2)));
-    }
-    for (const ObjectId object : {kSlab, kRibbon, kPlant}) {
+    add_block(example, kGlass, kEdges, {10, 10, 18, 18}, 0, 2);
+    add_block(example, kGlass, kEdges, {12, 12, 16, 16}, 3, 6);
+    example.polyhedra.push_back(box(kPlant, {1, 7, 15}, {3, 8, 17}));
+    for (const ObjectId object : {kSlab, kRibbon, kPlant, kCap, kCrown}) {
         example.dimensions.push_back({object, Point::UnitY()});
     }
     example.spacing = 1;
-    example.size = {48, 16, 48};
+    example.size = {48, 18, 48};
     return example;
 }
 
