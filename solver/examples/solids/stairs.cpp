@@ -101,7 +101,7 @@ continuous::Example make_stairs() {
     }
     example.spacing = 1;
     example.size = {40, 12, 40};
-    example.density = 0.5;
+    example.density = 0.4;
     return example;
 }
 

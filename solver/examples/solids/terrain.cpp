@@ -53,7 +53,7 @@ continuous::Example make_terrain() {
         {"rock", color(0x7D7268)},
         {"turf", color(0x6F9444)},
         {"bare rock", color(0x9A9087)}};
-    example.objects = {{"water", 0}, {"sand", 1}, {"rock", 2}, {"turf", 3}, {"peak", 4}};
+    example.objects = {{"water", 0}, {"sand", 1}, {"rock", 2}, {"turf", 3}, {"peak", 4, 3}};
     example.ground = kWater;
     // An island in the shape of a cross, with terraces flush with the ends of two arms ...
     for (const Plan& arm : {Plan{0, 7, 22, 15}, Plan{7, 0, 15, 22}}) {
@@ -70,7 +70,7 @@ continuous::Example make_terrain() {
         example.dimensions.push_back({layer, Point::UnitY()});
     }
     example.spacing = 1;
-    example.size = {40, 10, 40};
+    example.size = {48, 9, 48};
     example.density = 0.5;
     return example;
 }
