@@ -9,17 +9,15 @@ using continuous::Example;
 using continuous::ObjectId;
 using continuous::Point;
 
-// A pillar of each place in a chain is an object of its own: so none stands without its arches.
+// Pillars of different places in a chain are different objects: so none stands without its arches.
 // Vaults and walks of the two directions differ, since each is one spacing thick its own way.
 enum : ObjectId {
     kGround = 1,
     kVaultX,
     kVaultZ,
     kWalk,
-    kWestEnd,
-    kEastEnd,
-    kNorthEnd,
-    kSouthEnd,
+    kFirst,
+    kLast,
     kBetweenX,
     kBetweenZ,
     kCrossing
@@ -70,22 +68,21 @@ continuous::Example make_arches() {
         {"vault x", 2},
         {"vault z", 2},
         {"walk", 3},
-        {"west end", 1, 0.6},
-        {"east end", 1, 0.6},
-        {"north end", 1, 0.6},
-        {"south end", 1, 0.6},
+        {"first", 1, 0.6},
+        {"last", 1, 0.6},
         {"between x", 1, 1.5},
         {"between z", 1, 1.5},
         {"crossing", 1, 1.5}};
     example.ground = kGround;
-    // A chain along x of so many arches, or one along z; `across` is the one that a crossing is in.
+    // A chain of so many arches along x, or along z; pillar `crossing` is that of both, which the
+    // chain along x makes.
     const auto chain_x = [&](const Point& foot, int arches, int crossing) {
         for (int i = 0; i <= arches; ++i) {
             const Point at = foot + Point(i * kStride, 0, 0);
             add_pillar(
                 example,
-                i == 0          ? kWestEnd
-                : i == arches   ? kEastEnd
+                i == 0          ? kFirst
+                : i == arches   ? kLast
                 : i == crossing ? kCrossing
                                 : kBetweenX,
                 at
@@ -101,7 +98,7 @@ continuous::Example make_arches() {
         for (int i = 0; i <= arches; ++i) {
             const Point at = foot + Point(0, 0, i * kStride);
             if (i != crossing) {
-                add_pillar(example, i == 0 ? kNorthEnd : i == arches ? kSouthEnd : kBetweenZ, at);
+                add_pillar(example, i == 0 ? kFirst : i == arches ? kLast : kBetweenZ, at);
             }
             if (i < arches) {
                 add_vault(example, kVaultZ, at + Point::UnitZ());
@@ -117,14 +114,13 @@ continuous::Example make_arches() {
     chain_z({8, kTop + 1, 1}, 1, -1);
     example.dimensions = {
         {kVaultX, Point::UnitZ()}, {kVaultZ, Point::UnitX()}, {kWalk, Point::UnitY()}};
-    for (const ObjectId pillar :
-         {kWestEnd, kEastEnd, kNorthEnd, kSouthEnd, kBetweenX, kBetweenZ, kCrossing}) {
+    for (const ObjectId pillar : {kFirst, kLast, kBetweenX, kBetweenZ, kCrossing}) {
         example.dimensions.push_back({pillar, Point::UnitX()});
         example.dimensions.push_back({pillar, Point::UnitZ()});
     }
     example.spacing = 1;
-    example.size = {36, 12, 36};
-    example.density = 0.2;
+    example.size = {40, 12, 40};
+    example.density = 0.13;
     return example;
 }
 

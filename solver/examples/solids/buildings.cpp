@@ -81,7 +81,7 @@ continuous::Example make_buildings() {
     }
     blocks.append_to(example.polyhedra);
     example.spacing = 1;
-    example.size = {36, 12, 36};
+    example.size = {36, 10, 36};
     return example;
 }
 

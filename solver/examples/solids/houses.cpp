@@ -119,7 +119,7 @@ continuous::Example make_houses() {
                                      {6, 0, 10, 16, 2, Ridge::kAlongZ},
                                      {0, 6, 6, 10, 2, Ridge::kAlongX, 0, 2},
                                      {10, 6, 16, 10, 2, Ridge::kAlongX, 2, 0},
-                                     // A house of one storey with two wings ...
+                                     // One of one storey.
                                      {20, 6, 36, 10, 1, Ridge::kAlongX},
                                      {26, 0, 30, 6, 1, Ridge::kAlongZ, 0, 2},
                                      {26, 10, 30, 16, 1, Ridge::kAlongZ, 2, 0}};

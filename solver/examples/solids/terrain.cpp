@@ -21,8 +21,7 @@ struct Plan {
 
 // A layer one spacing high; its sides lean inwards at 45 degrees, or it is a cliff.
 void add_slope(Example& example, ObjectId object, const Plan& p, double y) {
-    example.polyhedra.push_back(
-        tapered(object, {p.x0, y, p.z0}, {p.x1, y + 1, p.z1}, {1, 1, 1, 1})
+    example.polyhedra.push_back(tapered(object, {p.x0, y, p.z0}, {p.x1, y + 1, p.z1}, {1, 1, 1, 1})
     );
 }
 
