@@ -23,9 +23,9 @@ enum : ObjectId {
     kPlant,
     kCap,
     kCrown,
+    kPlinth,
     kPiers,
-    kColumns = kPiers + 2,
-    kEdges = kColumns + 2
+    kFeet = kPiers + 2
 };
 
 constexpr double kCornerWeight = 0.5;
@@ -63,23 +63,37 @@ void add_corners(Example& example, ObjectId first, const Plan& p, double y0, dou
     }
 }
 
-// A solid part of a building under a cap; caps have a low weight, so that towers are high.
-void add_block(
-    Example& example, ObjectId body, ObjectId corners, const Plan& plan, double y0, double y1
-) {
-    add_body(example, body, plan, y0, y1);
-    add_corners(example, corners, plan, y0, y1);
-    example.polyhedra.push_back(
-        box(body == kStone ? kCap : kCrown, {plan.x0, y1, plan.z0}, {plan.x1, y1 + 1, plan.z1})
-    );
+void add_box(Example& example, ObjectId object, const Plan& plan, double y0, double y1) {
+    example.polyhedra.push_back(box(object, {plan.x0, y0, plan.z0}, {plan.x1, y1, plan.z1}));
 }
 
-// A part of storeys, of which the first and the last are slabs.
-void add_storeys(Example& example, const Plan& plan, int y0, int y1) {
-    for (int y = y0; y < y1; ++y) {
-        add_body(example, y % 2 == 0 ? kSlab : kRibbon, plan, y, y + 1);
+// Caps and crowns have a low weight, so that towers are high.
+void add_stone(Example& example, const Plan& plan, double y0, double y1) {
+    add_body(example, kStone, plan, y0, y1);
+    add_corners(example, kPiers, plan, y0, y1);
+    add_box(example, kCap, plan, y1, y1 + 1);
+}
+
+// Storeys and glass have corners in a plinth only: what stands on it is as wide.
+void add_plinth(Example& example, const Plan& plan, double y) {
+    add_body(example, kPlinth, plan, y, y + 1);
+    add_corners(example, kFeet, plan, y, y + 1);
+}
+
+void add_glass(Example& example, const Plan& plan, double y0, double y1) {
+    add_plinth(example, plan, y0);
+    add_box(example, kGlass, plan, y0 + 1, y1);
+    add_box(example, kCrown, plan, y1, y1 + 1);
+}
+
+// A ribbon of windows and a slab for each storey.
+void add_storeys(Example& example, const Plan& plan, double y0, int storeys) {
+    add_plinth(example, plan, y0);
+    for (int storey = 0; storey < storeys; ++storey) {
+        const double y = y0 + 1 + 2 * storey;
+        add_box(example, kRibbon, plan, y, y + 1);
+        add_box(example, kSlab, plan, y + 1, y + 2);
     }
-    add_corners(example, kColumns, plan, y0, y1);
 }
 
 void add_corner_objects(Example& example, const std::string& name, std::uint32_t material) {
@@ -117,21 +131,21 @@ continuous::Example make_skyscrapers() {
         {"glass", 5},
         {"plant", 6},
         {"cap", 2, 0.4},
-        {"crown", 6, 0.4}};
+        {"crown", 6, 0.4},
+        {"plinth", 3}};
     add_corner_objects(example, "pier", 2);
-    add_corner_objects(example, "column", 3);
-    add_corner_objects(example, "edge", 5);
+    add_corner_objects(example, "foot", 3);
     example.ground = kStreet;
-    add_block(example, kStone, kPiers, {0, 0, 8, 8}, 0, 2);
-    add_block(example, kStone, kPiers, {0, 0, 4, 4}, 3, 6);
-    add_block(example, kStone, kPiers, {10, 0, 18, 8}, 0, 2);
-    add_block(example, kStone, kPiers, {14, 4, 18, 8}, 3, 6);
-    add_storeys(example, {0, 10, 8, 18}, 0, 3);
-    add_storeys(example, {0, 14, 4, 18}, 3, 7);
-    add_block(example, kGlass, kEdges, {10, 10, 18, 18}, 0, 2);
-    add_block(example, kGlass, kEdges, {12, 12, 16, 16}, 3, 6);
-    example.polyhedra.push_back(box(kPlant, {1, 7, 15}, {3, 8, 17}));
-    for (const ObjectId object : {kSlab, kRibbon, kPlant, kCap, kCrown}) {
+    add_stone(example, {0, 0, 8, 8}, 0, 2);
+    add_stone(example, {0, 0, 4, 4}, 3, 6);
+    add_stone(example, {10, 0, 18, 8}, 0, 2);
+    add_stone(example, {14, 4, 18, 8}, 3, 6);
+    add_storeys(example, {0, 10, 8, 18}, 0, 1);
+    add_storeys(example, {0, 14, 4, 18}, 3, 2);
+    add_box(example, kPlant, {1, 15, 3, 17}, 8, 9);
+    add_glass(example, {10, 10, 18, 18}, 0, 2);
+    add_glass(example, {12, 12, 16, 16}, 3, 6);
+    for (const ObjectId object : {kSlab, kRibbon, kPlant, kCap, kCrown, kPlinth}) {
         example.dimensions.push_back({object, Point::UnitY()});
     }
     example.spacing = 1;
