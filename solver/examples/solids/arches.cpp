@@ -101,7 +101,7 @@ continuous::Example make_arches() {
     }
     example.spacing = 1;
     example.size = {40, 12, 40};
-    example.density = 0.16;
+    example.density = 0.2;
     return example;
 }
 
