@@ -7,20 +7,22 @@
 
 namespace modelsynth::examples {
 
-const std::vector<Example>& all() {
-    static const std::vector<Example> examples = [] {
-        std::vector<Example> list(built_in().begin(), built_in().end());
-        list.insert(list.end(), built_in_solids().begin(), built_in_solids().end());
-        return list;
-    }();
-    return examples;
+std::vector<Example> all() {
+    std::vector<Example> list(built_in().begin(), built_in().end());
+    for (auto& solids : built_in_solids()) {
+        list.emplace_back(std::move(solids));
+    }
+    return list;
 }
 
 std::optional<Example> find(std::string_view name) {
-    const auto found = std::find_if(all().begin(), all().end(), [name](const Example& example) {
-        return name_of(example) == name;
+    if (auto solids = find_solids(name)) {
+        return solids;
+    }
+    const auto found = std::find_if(built_in().begin(), built_in().end(), [name](const auto& grid) {
+        return grid->name == name;
     });
-    return found == all().end() ? std::nullopt : std::optional(*found);
+    return found == built_in().end() ? std::nullopt : std::optional<Example>(*found);
 }
 
 }  // namespace modelsynth::examples

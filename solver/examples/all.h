@@ -8,8 +8,9 @@
 
 namespace modelsynth::examples {
 
-// The built-in examples of every solver. Their names are their ids. Thread-safe.
-[[nodiscard]] const std::vector<Example>& all();
+// The built-in examples of every solver, made and read on first use. Their names are their ids.
+// Thread-safe.
+[[nodiscard]] std::vector<Example> all();
 
 [[nodiscard]] std::optional<Example> find(std::string_view name);
 

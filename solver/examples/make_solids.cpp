@@ -6,9 +6,9 @@
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/mesh/glb_writer.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <optional>
 
@@ -68,19 +68,19 @@ void synthesise(
     const std::string& directory
 ) {
     Silent observer;
-    const auto begun = std::chrono::steady_clock::now();
+    const std::clock_t begun = std::clock();
     const auto made = continuous::synthesise(problem, parameters, seed, observer, {});
     if (!made) {
         std::fprintf(stderr, "%s\n", made.error().message.c_str());
         std::exit(1);
     }
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    const double took = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
     const continuous::Surface surface = make_surface(problem, made->labels);
     std::printf(
         "seed %llu: %zu polygons in %.3f s, %u blocks accepted, %u reverted, %.0f %% changed\n",
         static_cast<unsigned long long>(seed),
         surface.polygons.size(),
-        took.count(),
+        took,
         made->stats.blocks.accepted(),
         made->stats.blocks.reverted,
         100 * made->stats.changed

@@ -2,28 +2,79 @@
 
 #include "solver/core/result.h"
 
+#include <algorithm>
+#include <array>
+#include <mutex>
+
 namespace modelsynth::examples {
 
 using continuous::ExampleReading;
 
-const std::vector<std::shared_ptr<const ExampleReading>>& built_in_solids() {
-    static const auto examples = [] {
-        std::vector<std::shared_ptr<const ExampleReading>> read;
-        for (const auto& make :
-             {make_skyscrapers,
-              make_houses,
-              make_roads,
-              make_plumbing,
-              make_oil_platform,
-              make_roller_coaster,
-              make_spaceships}) {
-            auto reading = ExampleReading::make(make());
-            check(reading.has_value(), "a built-in example of solids cannot be read");
-            read.push_back(std::move(*reading));
+namespace {
+
+struct Entry {
+    std::string_view name;
+    continuous::Example (*make)();
+};
+
+constexpr std::array kEntries = {
+    Entry{"houses", make_houses},
+    Entry{"skyscrapers", make_skyscrapers},
+    Entry{"buildings", make_buildings},
+    Entry{"pentagons", make_pentagons},
+    Entry{"arches", make_arches},
+    Entry{"stairs", make_stairs},
+    Entry{"terrain", make_terrain},
+    Entry{"fractals", make_fractals},
+    Entry{"roads", make_roads},
+    Entry{"plumbing", make_plumbing},
+    Entry{"oil_platform", make_oil_platform},
+    Entry{"roller_coaster", make_roller_coaster},
+    Entry{"spaceships", make_spaceships},
+};
+
+struct Known {
+    std::once_flag once;
+    std::shared_ptr<const ExampleReading> reading;
+};
+
+std::shared_ptr<const ExampleReading> read(std::size_t number) {
+    static std::array<Known, kEntries.size()> known;
+    std::call_once(known[number].once, [number] {
+        auto reading = ExampleReading::make(kEntries[number].make());
+        check(reading.has_value(), "a built-in example of solids cannot be read");
+        known[number].reading = std::move(*reading);
+    });
+    return known[number].reading;
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& solid_names() {
+    static const std::vector<std::string_view> names = [] {
+        std::vector<std::string_view> list;
+        for (const Entry& entry : kEntries) {
+            list.push_back(entry.name);
         }
-        return read;
+        return list;
     }();
-    return examples;
+    return names;
+}
+
+std::shared_ptr<const ExampleReading> find_solids(std::string_view name) {
+    const auto found = std::find_if(kEntries.begin(), kEntries.end(), [name](const Entry& entry) {
+        return entry.name == name;
+    });
+    return found == kEntries.end() ? nullptr
+                                   : read(static_cast<std::size_t>(found - kEntries.begin()));
+}
+
+std::vector<std::shared_ptr<const ExampleReading>> built_in_solids() {
+    std::vector<std::shared_ptr<const ExampleReading>> all;
+    for (std::size_t number = 0; number < kEntries.size(); ++number) {
+        all.push_back(read(number));
+    }
+    return all;
 }
 
 }  // namespace modelsynth::examples

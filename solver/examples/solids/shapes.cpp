@@ -87,11 +87,79 @@ Polyhedron pyramid(ObjectId object, const Outline& outline, double y0, const Poi
     return solid;
 }
 
+Polyhedron tapered(ObjectId object, const Point& min, const Point& max, const Insets& insets) {
+    Polyhedron solid = box(object, min, max);
+    for (Point& corner : solid.corners) {
+        if (corner.y() == max.y()) {
+            corner.x() += corner.x() == min.x() ? insets.west : -insets.east;
+            corner.z() += corner.z() == min.z() ? insets.north : -insets.south;
+        }
+    }
+    return solid;
+}
+
+Polyhedron hip_roof(ObjectId object, const Point& min, const Point& max) {
+    const double length = max.x() - min.x();
+    const double depth = max.z() - min.z();
+    const double rise = std::min(length, depth) / 2;
+    const double top = min.y() + rise;
+    if (length == depth) {
+        const Outline square = {
+            {min.x(), -max.z()}, {max.x(), -max.z()}, {max.x(), -min.z()}, {min.x(), -min.z()}};
+        return pyramid(object, square, min.y(), {min.x() + rise, top, min.z() + rise});
+    }
+    Polyhedron solid;
+    solid.object = object;
+    solid.corners = {
+        {min.x(), min.y(), min.z()},
+        {min.x(), min.y(), max.z()},
+        {max.x(), min.y(), max.z()},
+        {max.x(), min.y(), min.z()},
+        {min.x() + rise, top, min.z() + rise},
+        {max.x() - rise, top, max.z() - rise}};
+    if (length > depth) {
+        solid.faces = {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 5, 4}, {2, 3, 5}, {3, 0, 4, 5}};
+    } else {
+        solid.faces = {{0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 5}, {2, 3, 4, 5}, {3, 0, 4}};
+    }
+    return solid;
+}
+
 Polyhedron moved(Polyhedron solid, const Point& by) {
     for (Point& corner : solid.corners) {
         corner += by;
     }
     return solid;
+}
+
+void Blocks::add(ObjectId object, const Point& min, const Point& max) {
+    std::vector<Block> kept;
+    for (Block block : blocks_) {
+        const bool overlaps =
+            (block.min.array() < max.array()).all() && (min.array() < block.max.array()).all();
+        // What is left of it is cut off side by side.
+        for (int axis = 0; overlaps && axis < 3; ++axis) {
+            if (block.min[axis] < min[axis]) {
+                kept.push_back(block);
+                kept.back().max[axis] = block.min[axis] = min[axis];
+            }
+            if (max[axis] < block.max[axis]) {
+                kept.push_back(block);
+                kept.back().min[axis] = block.max[axis] = max[axis];
+            }
+        }
+        if (!overlaps) {
+            kept.push_back(block);
+        }
+    }
+    kept.push_back({object, min, max});
+    blocks_ = std::move(kept);
+}
+
+void Blocks::append_to(std::vector<Polyhedron>& solids) const {
+    for (const Block& block : blocks_) {
+        solids.push_back(box(block.object, block.min, block.max));
+    }
 }
 
 Color color(std::uint32_t srgb) {

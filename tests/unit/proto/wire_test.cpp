@@ -175,7 +175,7 @@ TEST(Json, RefusesDepthDuplicatesAndTextAfterANul) {
 TEST(ExampleCodec, ReadsTheContractsExample) {
     const auto upload = parse_example(kLine, {});
     ASSERT_TRUE(upload) << to_json(upload.error());
-    const discrete::Example& example = *upload->example;
+    const auto& example = *std::get<std::shared_ptr<const discrete::Example>>(upload->example);
     EXPECT_EQ(example.pieces.size(), 3U);
     EXPECT_EQ(example.pieces[2].weight, 2);
     EXPECT_EQ(example.empty, Label{0});
