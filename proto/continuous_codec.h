@@ -30,7 +30,10 @@ namespace modelsynth::proto {
     const Value& value, const RequestLimits& limits
 );
 
-// What a list shows of an example, and what its resource does.
+// The inverse.
+[[nodiscard]] OrderedJson write_solids(const continuous::Example& example);
+
+// What a list shows of an example; its resource has all of it besides.
 [[nodiscard]] OrderedJson solids_summary(
     const continuous::ExampleReading& reading, const std::string& id, bool built_in
 );

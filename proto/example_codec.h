@@ -21,6 +21,12 @@ struct ExampleUpload {
     std::string_view text, const RequestLimits& limits
 );
 
+// The same of a binary glTF file of closed meshes, see solver/continuous/import/mesh_import.h.
+// Fails: invalid-request, too-large.
+[[nodiscard]] Parsed<ExampleUpload> parse_example_glb(
+    std::string_view bytes, const RequestLimits& limits
+);
+
 // What GET /v1/examples lists of an example.
 [[nodiscard]] std::string example_summary(
     const Example& example, const std::string& id, bool built_in

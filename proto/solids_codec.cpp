@@ -1,8 +1,13 @@
 // Examples of the continuous solver.
 
 #include "proto/continuous_codec.h"
+#include "proto/example_codec.h"
+#include "solver/continuous/check/solid_check.h"
+#include "solver/continuous/import/default_spacing.h"
+#include "solver/continuous/import/mesh_import.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -62,7 +67,21 @@ class SolidsReader {
         }
         read_defaults();
         reader_.finish();
-        return value_.faults().empty() ? std::optional(std::move(example_)) : std::nullopt;
+        if (!value_.faults().empty()) {
+            return std::nullopt;
+        }
+        value_.faults().add_all(value_.pointer(), continuous::find_solid_faults(example_));
+        if (!value_.faults().empty()) {
+            return std::nullopt;
+        }
+        if (!is_spacing_given_) {
+            example_.spacing = continuous::default_spacing(example_);
+        }
+        if (!is_size_given_) {
+            const double spacing = example_.spacing;
+            example_.size = {24 * spacing, 10 * spacing, 24 * spacing};
+        }
+        return std::move(example_);
     }
 
   private:
@@ -169,14 +188,15 @@ class SolidsReader {
         if (spacing) {
             example_.spacing = spacing->number_above(0, kMetresMax).value_or(1);
         }
-        if (const auto size = reader_.optional("size")) {
+        const auto size = reader_.optional("size");
+        if (size) {
             const auto lengths = size->array(3, 3);
             for (std::size_t axis = 0; lengths && axis < 3; ++axis) {
                 example_.size[axis] = (*lengths)[axis].number_above(0, kMetresMax).value_or(1);
             }
-        } else if (spacing) {
-            example_.size = {20 * example_.spacing, 10 * example_.spacing, 20 * example_.spacing};
         }
+        is_size_given_ = size.has_value();
+        is_spacing_given_ = spacing.has_value();
         if (const auto density = reader_.optional("density")) {
             example_.density = density->number(0.001, 1).value_or(1);
         }
@@ -206,6 +226,8 @@ class SolidsReader {
     const RequestLimits& limits_;
     ObjectReader reader_;
     continuous::Example example_;
+    bool is_size_given_ = false;
+    bool is_spacing_given_ = false;
 };
 
 }  // namespace
@@ -224,6 +246,63 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
         return nullptr;
     }
     return std::move(*reading);
+}
+
+OrderedJson write_solids(const continuous::Example& example) {
+    const auto triple = [](const Color& color) {
+        return OrderedJson::array({color.r, color.g, color.b});
+    };
+    OrderedJson objects = OrderedJson::array();
+    for (const ObjectType& object : example.objects) {
+        const Material& material = example.materials[object.material];
+        objects.push_back(
+            {{"name", object.name},
+             {"color", triple(material.base_color)},
+             {"emissive", triple(material.emissive)},
+             {"metallic", material.metallic},
+             {"roughness", material.roughness},
+             {"weight", object.weight}}
+        );
+    }
+    OrderedJson polyhedra = OrderedJson::array();
+    for (const Polyhedron& solid : example.polyhedra) {
+        OrderedJson vertices = OrderedJson::array();
+        for (const Point& corner : solid.corners) {
+            vertices.push_back(write_point(corner));
+        }
+        polyhedra.push_back(
+            {{"name", solid.name},
+             {"object", example.objects[solid.object - 1U].name},
+             {"vertices", std::move(vertices)},
+             {"faces", solid.faces}}
+        );
+    }
+    OrderedJson dimensions = OrderedJson::array();
+    for (const continuous::Dimension& dimension : example.dimensions) {
+        dimensions.push_back(
+            {{"object", example.objects[dimension.object - 1U].name},
+             {"normal", write_point(dimension.normal)}}
+        );
+    }
+    OrderedJson written = {
+        {"kind", "continuous"},
+        {"name", example.name},
+        {"title", example.title},
+        {"description", example.description},
+        {"objects", std::move(objects)},
+        {"polyhedra", std::move(polyhedra)},
+        {"dimensions", std::move(dimensions)},
+        {"spacing", example.spacing},
+        {"size", example.size},
+        {"density", example.density}};
+    if (example.ground) {
+        written["ground"] = example.objects[*example.ground - 1U].name;
+    }
+    if (example.bounds) {
+        written["bounds"] = {
+            {"min", write_point(example.bounds->min)}, {"max", write_point(example.bounds->max)}};
+    }
+    return written;
 }
 
 OrderedJson solids_summary(const ExampleReading& reading, const std::string& id, bool built_in) {
@@ -248,41 +327,29 @@ OrderedJson solids_summary(const ExampleReading& reading, const std::string& id,
 }
 
 OrderedJson solids_resource(const ExampleReading& reading, const std::string& id, bool built_in) {
-    const continuous::Example& example = reading.example();
-    OrderedJson polyhedra = OrderedJson::array();
-    for (const Polyhedron& solid : example.polyhedra) {
-        OrderedJson vertices = OrderedJson::array();
-        for (const Point& corner : solid.corners) {
-            vertices.push_back(write_point(corner));
-        }
-        polyhedra.push_back(
-            {{"name", solid.name},
-             {"object", example.objects[solid.object - 1U].name},
-             {"vertices", std::move(vertices)},
-             {"faces", solid.faces}}
-        );
-    }
-    OrderedJson dimensions = OrderedJson::array();
-    for (const continuous::Dimension& dimension : example.dimensions) {
-        dimensions.push_back(
-            {{"object", example.objects[dimension.object - 1U].name},
-             {"normal", write_point(dimension.normal)}}
-        );
-    }
     OrderedJson resource = solids_summary(reading, id, built_in);
-    resource["density"] = example.density;
-    resource["ground"] = nullptr;
-    if (example.ground) {
-        resource["ground"] = example.objects[*example.ground - 1U].name;
-    }
-    resource["bounds"] = nullptr;
-    if (example.bounds) {
-        resource["bounds"] = {
-            {"min", write_point(example.bounds->min)}, {"max", write_point(example.bounds->max)}};
-    }
-    resource["dimensions"] = std::move(dimensions);
-    resource["polyhedra"] = std::move(polyhedra);
+    resource.update(write_solids(reading.example()));
     return resource;
+}
+
+Parsed<ExampleUpload> parse_example_glb(std::string_view bytes, const RequestLimits& limits) {
+    const auto refusal = [](const Error& error) {
+        Problem problem = problem_of(error);
+        if (error.code == ErrorCode::kInvalidArgument) {
+            problem.detail = "the example cannot be used: " + problem.detail;
+        }
+        return tl::unexpected(std::move(problem));
+    };
+    auto example = continuous::read_example_glb(std::as_bytes(std::span(bytes)));
+    if (!example) {
+        return refusal(example.error());
+    }
+    if (example->name.empty()) {
+        example->name = "solids";
+    }
+    // Kept as what it says, so that it can be shown and sent again like any other.
+    const std::string text = dump(Json::parse(dump(write_solids(*example))));
+    return parse_example(text, limits);
 }
 
 }  // namespace modelsynth::proto

@@ -98,14 +98,11 @@ Match find_route(const Request& request) {
     return match;
 }
 
-bool is_json(const Request& request) {
-    const auto type = request.header("content-type");
-    if (!type) {
-        return true;
-    }
-    std::string media = type->substr(0, type->find(';'));
-    media.erase(std::remove(media.begin(), media.end(), ' '), media.end());
-    return lower_case(media) == "application/json";
+// A body without a type is taken for JSON.
+bool is_taken(const Request& request, BodyKind body) {
+    const auto type = media_type(request);
+    return !type || *type == "application/json" ||
+           (body == BodyKind::kUpload && *type == "model/gltf-binary");
 }
 
 }  // namespace
@@ -147,16 +144,21 @@ std::optional<Response> Api::check_head(const Request& request) const {
             request
         );
     }
-    if (match.route->body != BodyKind::kOther && !is_json(request)) {
+    if (match.route->body != BodyKind::kOther && !is_taken(request, match.route->body)) {
+        const bool is_upload = match.route->body == BodyKind::kUpload;
+        const std::string taken =
+            is_upload ? "application/json or model/gltf-binary" : "application/json";
         Response response = problem_response(
             make_problem(
                 "unsupported-media-type",
-                "the body must be application/json; curl sends that with -H "
-                "'Content-Type: application/json'"
+                "the body must be " + taken + "; curl sends JSON with -H " +
+                    "'Content-Type: application/json'"
             ),
             request
         );
-        response.headers.emplace_back("Accept", "application/json");
+        response.headers.emplace_back(
+            "Accept", is_upload ? "application/json, model/gltf-binary" : "application/json"
+        );
         return response;
     }
     return std::nullopt;

@@ -53,7 +53,9 @@ Response list_examples(const Call& call) {
 }
 
 Response upload_example(const Call& call) {
-    const auto entry = call.service.examples().upload(call.request.body);
+    const auto form = media_type(call.request) == "model/gltf-binary" ? ExampleLibrary::Form::kGlb
+                                                                      : ExampleLibrary::Form::kJson;
+    const auto entry = call.service.examples().upload(call.request.body, form);
     if (!entry) {
         return refuse(call, entry.error());
     }

@@ -20,6 +20,16 @@ std::optional<std::uint64_t> parse_number(const std::string& text) {
     return value;
 }
 
+std::optional<std::string> media_type(const Request& request) {
+    const auto type = request.header("content-type");
+    if (!type) {
+        return std::nullopt;
+    }
+    std::string media = type->substr(0, type->find(';'));
+    media.erase(std::remove(media.begin(), media.end(), ' '), media.end());
+    return lower_case(std::move(media));
+}
+
 std::string lower_case(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(), [](char c) {
         return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;

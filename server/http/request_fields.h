@@ -20,6 +20,9 @@ namespace modelsynth::server {
 // ASCII alone.
 [[nodiscard]] std::string lower_case(std::string text);
 
+// What the body says it is, in lower case and without parameters; nothing when it says nothing.
+[[nodiscard]] std::optional<std::string> media_type(const Request& request);
+
 // The items of a comma-separated list, white space and what is quoted left out.
 [[nodiscard]] std::vector<std::string> list_items(const std::string& list);
 

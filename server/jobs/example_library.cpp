@@ -79,8 +79,9 @@ proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list() {
     return entries;
 }
 
-proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view text) {
-    auto upload = proto::parse_example(text, limits_);
+proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view body, Form form) {
+    auto upload = form == Form::kGlb ? proto::parse_example_glb(body, limits_)
+                                     : proto::parse_example(body, limits_);
     if (!upload) {
         return tl::unexpected(std::move(upload.error()));
     }

@@ -6,6 +6,7 @@
 #include "server/store/job_store.h"
 #include "solver/registry/task.h"
 
+#include <cstdint>
 #include <list>
 #include <mutex>
 #include <optional>
@@ -44,8 +45,10 @@ class ExampleLibrary {
     // Built-in ones first, then the uploaded ones by id.
     [[nodiscard]] proto::Parsed<std::vector<Entry>> list();
 
-    // Checks the JSON text and keeps it; the id is derived from the content.
-    [[nodiscard]] proto::Parsed<Entry> upload(std::string_view text);
+    // Checks the example and keeps it; the id is derived from the content. A GLB is kept as the
+    // JSON that says the same.
+    enum class Form : std::uint8_t { kJson, kGlb };
+    [[nodiscard]] proto::Parsed<Entry> upload(std::string_view body, Form form);
 
     // Fails: not-found, forbidden for a built-in one, example-in-use.
     [[nodiscard]] proto::Parsed<void> erase(const std::string& id);

@@ -273,7 +273,8 @@ ExamplePointer load(const std::filesystem::path& path) {
         std::fprintf(stderr, "%s: %s\n", path.c_str(), upload.error().detail.c_str());
         return nullptr;
     }
-    return upload->example;
+    const auto* grid = std::get_if<ExamplePointer>(&upload->example);
+    return grid == nullptr ? nullptr : *grid;
 }
 
 Options parse_options(int argc, char** argv) {

@@ -8,9 +8,11 @@
 #include "proto/job_request.h"
 #include "server/http/head_check.h"
 #include "server/http/message.h"
+#include "solver/continuous/scene.h"
 #include "solver/core/random.h"
 #include "solver/discrete/scene.h"
 #include "solver/examples/built_in.h"
+#include "solver/examples/solids/built_in_solids.h"
 #include "solver/mesh/glb_reader.h"
 #include "solver/mesh/glb_writer.h"
 #include "tests/support/png_file.h"
@@ -234,11 +236,67 @@ TEST(Fuzz, Examples) {
     fuzz(kExample, 2, [](const std::string& text) {
         const auto parsed = proto::parse_example(text, {});
         if (parsed) {
-            EXPECT_EQ(parsed->example->cells.size(), parsed->example->size.cell_count());
-            EXPECT_TRUE(write_glb(discrete::make_piece_sheet(*parsed->example)));
+            const auto* grid =
+                std::get_if<std::shared_ptr<const discrete::Example>>(&parsed->example);
+            EXPECT_TRUE(grid != nullptr);
+            EXPECT_EQ((*grid)->cells.size(), (*grid)->size.cell_count());
+            EXPECT_TRUE(write_glb(discrete::make_piece_sheet(**grid)));
         }
         return parsed.has_value();
     });
+}
+
+constexpr const char* kWedge =
+    R"({"kind":"continuous","name":"wedge","objects":[)"
+    R"({"name":"grass","color":[0.2,0.4,0.1]},{"name":"wall","weight":2}],)"
+    R"("ground":"grass","spacing":1,"size":[6,4,6],"density":0.4,)"
+    R"("dimensions":[{"object":"wall","normal":[0,0,1]}],)"
+    R"("bounds":{"min":[-9,-9,-9],"max":[9,9,9]},"polyhedra":[{"name":"w",)"
+    R"("object":"wall","vertices":[[0,0,0],[2,0,0],[0,1,0],[0,0,1],[2,0,1],)"
+    R"([0,1,1]],"faces":[[0,2,1],[3,4,5],[0,1,4,3],[1,2,5,4],[0,3,5,2]]}]})";
+
+// What is accepted of solids can be made, and is told in a form that is accepted again.
+TEST(Fuzz, Solids) {
+    const auto none = [](const std::string&) { return std::optional<Example>(); };
+    const std::string request =
+        std::string(R"({"solver":"continuous","example":)") + kWedge +
+        R"(,"seed":7,"parameters":{"size":[5,3.5,6],"spacing":1,"blocks":{"size":[4,4,4]},)"
+        R"("density":0.5,"weights":{"wall":3},"constraints":[{"kind":"dimension","object":"wall",)"
+        R"("normal":[0,0,1]}]},"tags":{}})";
+    constexpr std::size_t kMadeCellsMax = 300;
+    std::size_t made = 0;
+    fuzz(request, 11, [&](const std::string& text) {
+        const auto parsed = proto::parse_job_request(text, {}, none, nullptr, 1);
+        if (!parsed) {
+            EXPECT_FALSE(proto::to_json(parsed.error()).empty());
+            return false;
+        }
+        const auto again = proto::parse_job_request(parsed->echo, {}, none, nullptr, 2);
+        EXPECT_TRUE(again && again->echo == parsed->echo) << text;
+        if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
+            Preparations preparations;
+            Silent observer;
+            const auto finished = run(parsed->task, preparations, observer, {});
+            EXPECT_TRUE(finished || !finished.error().message.empty());
+            made += finished ? 1U : 0U;
+        }
+        return true;
+    });
+    EXPECT_GT(made, 1U);  // the request as it stands, and others
+    fuzz(kWedge, 12, [](const std::string& text) {
+        return proto::parse_example(text, {}).has_value();
+    });
+}
+
+TEST(Fuzz, SolidsInBinaryGltf) {
+    const auto& houses = examples::find_solids("houses");
+    const std::string glb = *write_glb(continuous::make_example_scene(*houses));
+    std::size_t read = 0;
+    for (std::uint64_t round = 0; round < rounds() / 10; ++round) {
+        RandomStream random({round, 0, 0, 13});
+        read += proto::parse_example_glb(mutate(glb, random), {}) ? 1U : 0U;
+    }
+    EXPECT_LT(read, rounds());
 }
 
 TEST(Fuzz, BinaryGltf) {

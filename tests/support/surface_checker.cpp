@@ -68,6 +68,10 @@ PolygonSet solids_of(const Example& example) {
     frame.tolerance = 8e-6 * extent;
     frame.reach = extent;
     frame.clip = inflated(box, extent);
+    if (example.ground) {  // however high the solids float
+        frame.clip.extend(Point(box.min().x(), -extent, box.min().z()));
+        frame.clip.extend(Point(box.min().x(), extent, box.min().z()));
+    }
     if (example.bounds) {
         frame.clip = Eigen::AlignedBox3d(example.bounds->min, example.bounds->max);
     }
@@ -169,8 +173,9 @@ SurfaceChecker::SurfaceChecker(Example example)
         figures_.insert(sample_figure(solids, cells_, point).objects);
     }
     if (example_.ground && !example_.bounds) {  // which is bare beside all solids
-        const double far = solids.frame().clip.max().cwiseAbs().maxCoeff();
-        figures_.insert(sample_figure(solids, cells_, Point(0.9 * far, 0, 0.9 * far)).objects);
+        Point beside = solids.frame().clip.max().array() - solids.frame().reach / 2;
+        beside.y() = 0;
+        figures_.insert(sample_figure(solids, cells_, beside).objects);
     }
 }
 
