@@ -230,6 +230,25 @@ class SolidsReader {
     bool is_spacing_given_ = false;
 };
 
+OrderedJson write_objects(const continuous::Example& example) {
+    const auto triple = [](const Color& color) {
+        return OrderedJson::array({color.r, color.g, color.b});
+    };
+    OrderedJson objects = OrderedJson::array();
+    for (const ObjectType& object : example.objects) {
+        const Material& material = example.materials[object.material];
+        objects.push_back(
+            {{"name", object.name},
+             {"color", triple(material.base_color)},
+             {"emissive", triple(material.emissive)},
+             {"metallic", material.metallic},
+             {"roughness", material.roughness},
+             {"weight", object.weight}}
+        );
+    }
+    return objects;
+}
+
 }  // namespace
 
 std::shared_ptr<const ExampleReading> read_solids(const Value& value, const RequestLimits& limits) {
@@ -249,21 +268,6 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
 }
 
 OrderedJson write_solids(const continuous::Example& example) {
-    const auto triple = [](const Color& color) {
-        return OrderedJson::array({color.r, color.g, color.b});
-    };
-    OrderedJson objects = OrderedJson::array();
-    for (const ObjectType& object : example.objects) {
-        const Material& material = example.materials[object.material];
-        objects.push_back(
-            {{"name", object.name},
-             {"color", triple(material.base_color)},
-             {"emissive", triple(material.emissive)},
-             {"metallic", material.metallic},
-             {"roughness", material.roughness},
-             {"weight", object.weight}}
-        );
-    }
     OrderedJson polyhedra = OrderedJson::array();
     for (const Polyhedron& solid : example.polyhedra) {
         OrderedJson vertices = OrderedJson::array();
@@ -289,7 +293,7 @@ OrderedJson write_solids(const continuous::Example& example) {
         {"name", example.name},
         {"title", example.title},
         {"description", example.description},
-        {"objects", std::move(objects)},
+        {"objects", write_objects(example)},
         {"polyhedra", std::move(polyhedra)},
         {"dimensions", std::move(dimensions)},
         {"spacing", example.spacing},
@@ -308,10 +312,6 @@ OrderedJson write_solids(const continuous::Example& example) {
 OrderedJson solids_summary(const ExampleReading& reading, const std::string& id, bool built_in) {
     const continuous::Example& example = reading.example();
     const std::string self = "/v1/examples/" + id;
-    OrderedJson objects = OrderedJson::array();
-    for (const ObjectType& object : example.objects) {
-        objects.push_back(object.name);
-    }
     return {
         {"id", id},
         {"kind", "continuous"},
@@ -320,8 +320,9 @@ OrderedJson solids_summary(const ExampleReading& reading, const std::string& id,
         {"description", example.description},
         {"built_in", built_in},
         {"labels", reading.figures().count()},
-        {"objects", std::move(objects)},
+        {"objects", write_objects(example)},
         {"spacing", example.spacing},
+        {"size", example.size},
         {"default_size", example.size},
         {"urls", {{"self", self}, {"model", self + "/model.glb"}}}};
 }

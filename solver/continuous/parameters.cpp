@@ -109,7 +109,8 @@ std::vector<Fault> find_faults(const ExampleReading& reading, const Parameters& 
         const DimensionRule& rule = (*parameters.dimensions)[i];
         const std::string pointer = "/constraints/" + std::to_string(i);
         check_object(pointer + "/object", rule.object);
-        if (!find_family(reading.topes(), rule.normal)) {
+        const bool has_length = rule.normal.norm() > 1e-9;  // else that is a fault of its own
+        if (has_length && !find_family(reading.topes(), rule.normal)) {
             faults.push_back(
                 {pointer + "/normal", "no face of the example has this normal or its opposite"}
             );

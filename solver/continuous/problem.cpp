@@ -92,11 +92,12 @@ void forbid_wider(
     }
 }
 
-// A vertex takes figures that change only across its planes, and that look the same as the initial
-// model along edges that leave the box.
+// A vertex takes figures that have a weight and change only across its planes, and that look the
+// same as the initial model along edges that leave the box.
 SiteDomains domains_of(
     const ExampleReading& reading,
     const Parameters& parameters,
+    const LabelWeights& weights,
     const Arrangement& arrangement,
     std::span<const Label> initial
 ) {
@@ -129,6 +130,11 @@ SiteDomains domains_of(
                 });
             if (fits) {
                 allowed.insert(label);
+            }
+        }
+        for (std::size_t l = 0; l < figures.count(); ++l) {
+            if (weights.of(static_cast<Label>(l)) == 0) {
+                allowed.erase(static_cast<Label>(l));
             }
         }
         for (const DimensionRule& dimension : *parameters.dimensions) {
@@ -193,7 +199,9 @@ Result<Problem> make_problem(
         return tl::unexpected(std::move(arrangement.error()));
     }
     std::vector<Label> initial = initial_labels(*reading, *arrangement);
-    SiteDomains domains = domains_of(*reading, parameters, *arrangement, initial);
+    const LabelWeights label_weights = weights_of(*reading, parameters);
+    SiteDomains domains =
+        domains_of(*reading, parameters, label_weights, *arrangement, initial);
     std::set<FamilySet> types;
     for (std::size_t site = 0; site < arrangement->vertex_count(); ++site) {
         types.insert(arrangement->families(static_cast<Site>(site)));
@@ -208,7 +216,7 @@ Result<Problem> make_problem(
             homeless.push_back(static_cast<Label>(l));
         }
     }
-    SiteWeights weights(weights_of(*reading, parameters));
+    SiteWeights weights(label_weights);
     return Problem{
         std::move(reading),
         std::move(spacings),

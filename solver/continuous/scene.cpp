@@ -105,8 +105,11 @@ class MeshBuilder {
     }
 
     Scene finish() {
-        kit_->meshes.push_back(std::move(mesh_));
         Scene scene;
+        if (mesh_.primitives.empty()) {
+            return scene;  // glTF has no meshes without parts
+        }
+        kit_->meshes.push_back(std::move(mesh_));
         scene.kit = std::move(kit_);
         scene.names = {scene.kit->meshes.front().name};
         scene.groups.push_back({"", {Instance{}}});

@@ -97,11 +97,11 @@ class Server:
     def get(self, path, **kwargs):
         return self.request("GET", path, **kwargs)
 
-    def submit(self, size=(20, 8, 20), seed=7, example="castle", **more):
+    def submit(self, size=(20, 8, 20), seed=7, example="castle", solver="discrete", **more):
         """Submits a job and returns the job."""
         parameters = {"size": list(size), **more.pop("parameters", {})}
         answer = self.request("POST", "/v1/jobs", {
-            "solver": "discrete", "example": example, "seed": seed, "parameters": parameters,
+            "solver": solver, "example": example, "seed": seed, "parameters": parameters,
             **more})
         assert answer.status == 202, answer.body
         return answer.json()

@@ -42,7 +42,8 @@ def requests_for(server):
     for example in server.get("/v1/examples").json()["items"]:
         if example["built_in"]:
             for size in ((12, 8, 12), (30, 8, 18)):
-                requests[f"{example['id']} {size}"] = {"example": example["id"], "size": size}
+                requests[f"{example['id']} {size}"] = {
+                    "solver": example["kind"], "example": example["id"], "size": size}
     return requests
 
 
@@ -62,9 +63,9 @@ def fingerprint(server, job_id):
         assert len(model) == job["result"]["bytes"]
         stats = dict(job["result"]["stats"])
         del stats["solve_seconds"]
-        print_of.update(
-            sha256=job["result"]["sha256"], stats=stats,
-            labels=server.get(f"/v1/jobs/{job_id}/labels.json").body)
+        print_of.update(sha256=job["result"]["sha256"], stats=stats)
+        if "labels" in job["urls"]:
+            print_of["labels"] = server.get(job["urls"]["labels"]).body
     else:
         print_of["error"] = {name: value for name, value in job["error"].items()
                              if name != "instance"}

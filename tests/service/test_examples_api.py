@@ -104,7 +104,7 @@ def test_the_built_in_examples_are_listed(server):
     ids = [example["id"] for example in page["items"]]
     assert {"castle", "city", "canyon"} <= set(ids) and len(ids) == len(set(ids))
     for item in page["items"]:
-        assert item["kind"] == "discrete" and len(item["size"]) == 3
+        assert item["kind"] in ("discrete", "continuous") and len(item["size"]) == 3
         assert server.get(item["urls"]["self"]).json().items() >= item.items()
 
 

@@ -90,7 +90,7 @@ def sources(server):
     """One model of an example with turned pieces, and one of each example that is built in."""
     found = [Source(server, "yard", YARD, (37, 5, 19), {"weights": "uniform"})]
     for example in server.get("/v1/examples").json()["items"]:
-        if example["built_in"]:
+        if example["built_in"] and example["kind"] == "discrete":
             found.append(Source(server, example["id"], example["id"], (18, 8, 20), {}))
     return found
 
