@@ -1,7 +1,5 @@
 #include "solver/continuous/arrangement.h"
 
-#include "solver/core/label_chooser.h"
-
 #include <Eigen/Dense>
 
 #include <algorithm>

@@ -162,8 +162,7 @@ class Reader {
     void read_lines() {
         for (std::size_t a = 0; a < patches_.size(); ++a) {
             for (std::size_t b = a + 1; b < patches_.size(); ++b) {
-                if (patches_[a].family != patches_[b].family &&
-                    overlap(patches_[a], patches_[b])) {
+                if (patches_[a].family != patches_[b].family && overlap(patches_[a], patches_[b])) {
                     read_line(patches_[a], patches_[b]);
                 }
                 if (is_spent()) {
@@ -299,6 +298,7 @@ class Reader {
             );
         }
         const double reach = nearest / 4;
+
         // Of the cells that are one for the planes through the point, the one whose inside is
         // farthest from them.
         struct Sample {
@@ -306,6 +306,7 @@ class Reader {
             Tope tope = 0;
             char object = 0;
         };
+
         std::map<FamilySet, Sample> samples;
         for (std::size_t t = 0; t < topes_.count(); ++t) {
             const auto tope = static_cast<Tope>(t);

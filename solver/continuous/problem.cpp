@@ -1,7 +1,5 @@
 #include "solver/continuous/problem.h"
 
-#include "solver/core/label_chooser.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -200,8 +198,7 @@ Result<Problem> make_problem(
     }
     std::vector<Label> initial = initial_labels(*reading, *arrangement);
     const LabelWeights label_weights = weights_of(*reading, parameters);
-    SiteDomains domains =
-        domains_of(*reading, parameters, label_weights, *arrangement, initial);
+    SiteDomains domains = domains_of(*reading, parameters, label_weights, *arrangement, initial);
     std::set<FamilySet> types;
     for (std::size_t site = 0; site < arrangement->vertex_count(); ++site) {
         types.insert(arrangement->families(static_cast<Site>(site)));

@@ -114,10 +114,11 @@ bool is_along_axis(const Point& normal) {
     return normal.cwiseAbs().maxCoeff() > 1 - kNormalTolerance;
 }
 
-// Of a family that nothing is asked of: planes through all points of the grid that the families
-// along the axes make, where slopes are small ratios. What stands on a grid stays on it.
+// Of a family that nothing is asked of: planes through all points of the grid that families
+// along the axes make or would make, where slopes are small ratios. What stands on a grid stays on
+// it.
 std::optional<double> on_grid(
-    const Topes& topes, std::size_t family, std::span<const double> spacings
+    const Topes& topes, std::size_t family, double spacing, std::span<const double> spacings
 ) {
     std::vector<double> steps;
     for (int axis = 0; axis < 3; ++axis) {
@@ -125,14 +126,11 @@ std::optional<double> on_grid(
         if (part < kNormalTolerance) {
             continue;
         }
-        double along_axis = 0;
+        double along_axis = spacing;
         for (std::size_t other = 0; other < topes.family_count(); ++other) {
             if (std::abs(topes.normals()[other][axis]) > 1 - kNormalTolerance) {
                 along_axis = spacings[other];
             }
-        }
-        if (along_axis == 0) {
-            return std::nullopt;
         }
         steps.push_back(part * along_axis);
     }
@@ -189,7 +187,7 @@ Spacings solve_spacings(const Figures& figures, double spacing, std::span<const 
             const auto open = std::find(next.begin(), next.end(), 0.0);
             if (open != next.end()) {
                 const auto family = static_cast<std::size_t>(open - next.begin());
-                *open = on_grid(topes, family, found).value_or(spacing);
+                *open = on_grid(topes, family, spacing, found).value_or(spacing);
                 goes_on = true;
             }
         }

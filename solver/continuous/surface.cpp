@@ -1,7 +1,5 @@
 #include "solver/continuous/surface.h"
 
-#include "solver/core/label_chooser.h"
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -386,7 +384,7 @@ class SurfaceBuilder {
     std::vector<HalfEdge> half_edges_;
     std::vector<std::uint32_t> rim_;                           // the ground's
     std::optional<std::pair<ObjectId, std::uint8_t>> ground_;  // and its plane's family
-    std::size_t ground_plane_ = 0;  // its number
+    std::size_t ground_plane_ = 0;                             // its number
     Surface surface_;
 };
 

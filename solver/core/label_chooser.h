@@ -11,8 +11,6 @@
 
 namespace modelsynth {
 
-inline constexpr Site kNoSite = ~Site{0};
-
 // Chooses a label for a site by what is decided around it, where weights alone do not tell.
 // Sites are numbered as in the whole. Thread-safe.
 class LabelChooser {

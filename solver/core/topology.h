@@ -11,6 +11,7 @@ namespace modelsynth {
 
 // A site takes one label. Sites of one topology are numbered 0 ... site_count()-1.
 using Site = std::uint32_t;
+inline constexpr Site kNoSite = ~Site{0};
 
 // What the search runs on: sites joined by arcs, each arc of a kind (its relation).
 //

@@ -3,6 +3,8 @@
 import collections
 import json
 import math
+import pathlib
+import re
 
 import pytest
 
@@ -10,6 +12,8 @@ from checks import assert_faults, assert_problem, state_of, wait_until
 from glb_file import GlbFile
 from test_websocket import frames_of, watch
 from websocket_client import GLB
+
+_GUIDE = pathlib.Path(__file__).parents[2] / "proto" / "continuous.md"
 
 SIZE = [9.0, 5.0, 9.0]
 
@@ -316,3 +320,13 @@ def test_a_job_goes_on_after_a_crash(make_server):
     whole = server.request("POST", "/v1/jobs", request, headers={"Prefer": "wait=60"}).json()
     again = server.get(f"/v1/jobs/{job['id']}").json()
     assert again["result"]["sha256"] == whole["result"]["sha256"]
+
+
+def test_the_requests_of_the_guide_are_done(server):
+    requests = re.findall(r"```json\n(.*?)```", _GUIDE.read_text(), re.DOTALL)
+    assert len(requests) == 2
+    for text in requests:
+        answer = server.request("POST", "/v1/jobs", text, headers={
+            "Prefer": "wait=60", "Content-Type": "application/json"})
+        assert answer.json()["state"] == "succeeded", answer.body
+        assert answer.json()["result"]["stats"]["changed"] > 0.01

@@ -124,7 +124,6 @@ def test_another_media_type_is_refused(server, path, kind):
     assert "application/json" in answer.headers.get("accept", "")
 
 
-@pytest.mark.xfail(strict=True, reason="uploading a GLB is in the contract, not yet built")
 def test_an_example_may_be_uploaded_as_a_glb(server):
     answer = server.request("POST", "/v1/examples", b"glTF",
                             headers={"Content-Type": "model/gltf-binary"})

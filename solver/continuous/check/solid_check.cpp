@@ -1,8 +1,8 @@
 #include "solver/continuous/check/solid_check.h"
 
 #include "solver/continuous/check/face_crossings.h"
-#include "solver/continuous/families.h"
 #include "solver/continuous/check/self_crossing.h"
+#include "solver/continuous/families.h"
 
 #include <Eigen/Geometry>
 

@@ -1,9 +1,9 @@
 #include "solver/continuous/import/mesh_import.h"
 
+#include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/import_objects.h"
 #include "solver/continuous/import/import_settings.h"
-#include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/triangle_solids.h"
 #include "solver/continuous/import/welding.h"
 #include "solver/mesh/glb_scene.h"

@@ -1,7 +1,7 @@
 #include "solver/continuous/import/triangle_solids.h"
 
-#include "solver/continuous/import/face_merging.h"
 #include "solver/continuous/families.h"
+#include "solver/continuous/import/face_merging.h"
 #include "solver/continuous/solids.h"
 
 #include <Eigen/Geometry>

@@ -1,10 +1,10 @@
 #include "solver/continuous/import/mesh_import.h"
 
-#include "solver/continuous/import/default_spacing.h"
-#include "solver/continuous/families.h"
 #include "solver/continuous/check/flat.h"
-#include "solver/continuous/reading.h"
 #include "solver/continuous/check/solid_check.h"
+#include "solver/continuous/families.h"
+#include "solver/continuous/import/default_spacing.h"
+#include "solver/continuous/reading.h"
 #include "solver/continuous/triangulation.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
