@@ -282,6 +282,10 @@ class Reader {
         FamilySet here = 0;
         double nearest = extent_;
         for (Patch& other : patches_) {
+            const Point nearby = point.cwiseMax(other.min).cwiseMin(other.max);
+            if ((nearby - point).norm() > std::max(nearest, 4 * tolerance_)) {
+                continue;
+            }
             const double away = distance(other, point);
             if (away <= 4 * tolerance_) {
                 other.is_seen = true;
