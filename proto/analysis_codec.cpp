@@ -1,6 +1,5 @@
 #include "proto/analysis_codec.h"
 
-#include "proto/continuous_codec.h"
 #include "proto/json.h"
 #include "solver/discrete/analysis/success_drawing.h"
 
@@ -175,7 +174,7 @@ OrderedJson write(const continuous::Analysis& analysis, const std::string& self)
     for (const continuous::Analysis::Family& family : analysis.families) {
         families.push_back(
             {{"name", "h" + std::to_string(families.size() + 1)},
-             {"normal", write_point(family.normal)},
+             {"normal", family.normal},
              {"spacing", family.spacing}}
         );
     }

@@ -61,9 +61,12 @@ void read_constraints(const Value& value, const RequestLimits& limits, Parameter
             rule.object = object->string(limits.name_characters_max).value_or("");
         }
         if (const auto normal = reader.required("normal")) {
-            rule.normal = read_point(*normal, kMetresMax).value_or(rule.normal);
-            if (rule.normal.norm() < 1e-9) {
+            const auto direction = read_point(*normal, kMetresMax);
+            if (direction && direction->norm() < 1e-9) {
                 normal->fault("must have a length");
+            }
+            if (direction) {
+                rule.normal = {direction->x(), direction->y(), direction->z()};
             }
         }
         reader.finish();
@@ -126,7 +129,7 @@ OrderedJson write_parameters(const Parameters& parameters) {
     OrderedJson constraints = OrderedJson::array();
     for (const DimensionRule& rule : *parameters.dimensions) {
         constraints.push_back(
-            {{"kind", "dimension"}, {"object", rule.object}, {"normal", write_point(rule.normal)}}
+            {{"kind", "dimension"}, {"object", rule.object}, {"normal", rule.normal}}
         );
     }
     return {

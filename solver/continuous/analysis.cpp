@@ -1,12 +1,7 @@
 #include "solver/continuous/analysis.h"
 
-#include "solver/continuous/parameters.h"
-#include "solver/continuous/problem.h"
+#include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
-
-#include <algorithm>
-#include <array>
-#include <memory>
 
 namespace modelsynth::continuous {
 
@@ -17,7 +12,10 @@ Analysis analyse(const ExampleReading& reading) {
     const std::vector<double> free(topes.family_count(), 0);
     const Spacings spacings = solve_spacings(figures, reading.example().spacing, free);
     for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        analysis.families.push_back({topes.normals()[family], spacings.of_family[family]});
+        const Point& normal = topes.normals()[family];
+        analysis.families.push_back(
+            {{normal.x(), normal.y(), normal.z()}, spacings.of_family[family]}
+        );
     }
     analysis.figures = figures.count();
     for (std::size_t label = 0; label < figures.count(); ++label) {

@@ -1,17 +1,18 @@
 #pragma once
 
-#include "solver/continuous/reading.h"
-
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace modelsynth::continuous {
 
+class ExampleReading;
+
 // What can be said of an example before anything is made of it.
 struct Analysis {
     struct Family {
-        Point normal;
+        std::array<double, 3> normal = {};
         double spacing = 0;  // metres, at the example's default spacing
     };
 

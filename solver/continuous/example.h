@@ -76,4 +76,7 @@ struct Example {
     double density = 0.3;                      // default; see Parameters
 };
 
+// The object of a name; kEmpty when there is none.
+[[nodiscard]] ObjectId find_object(const Example& example, const std::string& name);
+
 }  // namespace modelsynth::continuous

@@ -12,7 +12,7 @@ Result<Figures> Figures::make(
     constexpr std::size_t kBytesMax = std::size_t{1} << 30;  // looked at in all
     Figures made(topes);
     for (const Figure& seed : seeds) {
-        ++made.occurrences_[made.add(seed)];
+        made.add(seed);
     }
     const std::size_t headings = topes.heading_count();
     Figure next(topes.count(), '\0');
@@ -42,7 +42,6 @@ Label Figures::add(Figure figure) {
     if (is_new) {
         check(figures_.size() < kLabelCountMax, "more figures than a label can number");
         figures_.push_back(&at->first);
-        occurrences_.push_back(0);
         FamilySet relevant = 0;
         for (std::size_t tope = 0; tope < topes_.count(); ++tope) {
             for (std::size_t family = 0; family < topes_.family_count(); ++family) {

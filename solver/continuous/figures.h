@@ -45,9 +45,6 @@ class Figures {
         return along_[label * topes_.heading_count() + heading];
     }
 
-    // How often the figure stands at a corner of the example, 0 for those found by looking along.
-    [[nodiscard]] std::uint32_t occurrences(Label label) const { return occurrences_[label]; }
-
     [[nodiscard]] const Topes& topes() const { return topes_; }
 
   private:
@@ -60,7 +57,6 @@ class Figures {
     std::vector<const Figure*> figures_;  // keys of numbers_, which stay where they are
     std::vector<FamilySet> relevant_;
     std::vector<Label> along_;
-    std::vector<std::uint32_t> occurrences_;
 };
 
 // The number of dimensions that the normals of some families span: 0 inside a solid or empty space,

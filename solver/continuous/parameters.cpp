@@ -64,7 +64,8 @@ Parameters fill_defaults(Parameters parameters, const Example& example) {
         parameters.dimensions.emplace();
         for (const Dimension& dimension : example.dimensions) {
             parameters.dimensions->push_back(
-                {example.objects[dimension.object - 1U].name, dimension.normal}
+                {example.objects[dimension.object - 1U].name,
+                 {dimension.normal.x(), dimension.normal.y(), dimension.normal.z()}}
             );
         }
     }
@@ -75,24 +76,6 @@ Parameters fill_defaults(Parameters parameters, const Example& example) {
         parameters.blocks = blocks;
     }
     return parameters;
-}
-
-ObjectId find_object(const Example& example, const std::string& name) {
-    const auto found =
-        std::find_if(example.objects.begin(), example.objects.end(), [&](const ObjectType& object) {
-            return object.name == name;
-        });
-    const auto number = found - example.objects.begin();
-    return found == example.objects.end() ? kEmpty : static_cast<ObjectId>(number + 1);
-}
-
-std::optional<std::size_t> find_family(const Topes& topes, const Point& normal) {
-    for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        if (std::abs(topes.normals()[family].dot(normal.normalized())) > 1 - 1e-9) {
-            return family;
-        }
-    }
-    return std::nullopt;
 }
 
 std::vector<Fault> find_faults(const ExampleReading& reading, const Parameters& parameters) {
@@ -109,8 +92,9 @@ std::vector<Fault> find_faults(const ExampleReading& reading, const Parameters& 
         const DimensionRule& rule = (*parameters.dimensions)[i];
         const std::string pointer = "/constraints/" + std::to_string(i);
         check_object(pointer + "/object", rule.object);
-        const bool has_length = rule.normal.norm() > 1e-9;  // else that is a fault of its own
-        if (has_length && !find_family(reading.topes(), rule.normal)) {
+        const Point normal(rule.normal[0], rule.normal[1], rule.normal[2]);
+        const bool has_length = normal.norm() > 1e-9;  // else that is a fault of its own
+        if (has_length && !reading.topes().find_family(normal)) {
             faults.push_back(
                 {pointer + "/normal", "no face of the example has this normal or its opposite"}
             );

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "solver/continuous/example.h"
 #include "solver/core/block_schedule.h"
 #include "solver/core/grid.h"
 #include "solver/core/result.h"
@@ -17,7 +16,7 @@ namespace modelsynth::continuous {
 // The example's Dimension, as requests name it.
 struct DimensionRule {
     std::string object;
-    Point normal = Point::UnitY();  // need not be of unit length
+    std::array<double, 3> normal = {0, 1, 0};  // need not be of unit length
 
     friend bool operator==(const DimensionRule&, const DimensionRule&) = default;
 };
@@ -40,23 +39,17 @@ struct Parameters {
 
 inline constexpr std::int32_t kCellsAlongMax = 4096;
 
+class ExampleReading;
+struct Example;
+
 // The parameters with every default filled in from the example.
 [[nodiscard]] Parameters fill_defaults(Parameters parameters, const Example& example);
-
-class ExampleReading;
-class Topes;
 
 // What cannot be done of them; pointers are relative to the parameters. Requires: defaults filled
 // in.
 [[nodiscard]] std::vector<Fault> find_faults(
     const ExampleReading& reading, const Parameters& parameters
 );
-
-// The object of a name; kEmpty when there is none.
-[[nodiscard]] ObjectId find_object(const Example& example, const std::string& name);
-
-// The family that a normal or its opposite, of any length, is that of.
-[[nodiscard]] std::optional<std::size_t> find_family(const Topes& topes, const Point& normal);
 
 // The model's size in spacings, cut ones counted whole. Requires: defaults filled in.
 [[nodiscard]] GridSize cells_of(const Parameters& parameters);

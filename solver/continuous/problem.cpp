@@ -73,7 +73,8 @@ void forbid_wider(
     LabelSet& allowed
 ) {
     const Topes& topes = reading.topes();
-    const std::size_t family = *find_family(topes, dimension.normal);
+    const auto& [x, y, z] = dimension.normal;
+    const std::size_t family = *topes.find_family(Point(x, y, z));
     const auto object = static_cast<char>(find_object(reading.example(), dimension.object));
     if ((families >> family & 1) == 0) {
         return;

@@ -1,6 +1,6 @@
 #include "solver/continuous/scene.h"
 
-#include "solver/continuous/triangulation.h"
+#include "solver/continuous/triangulation/triangulation.h"
 
 #include <Eigen/Geometry>
 

@@ -15,7 +15,7 @@ namespace modelsynth::continuous {
     const ExampleReading& reading, const Surface& surface, const Bounds& part
 );
 
-// The example's solids as they were given, on a piece of ground when there is one.
+// The example's solids as they were given, overlaps too, without its ground.
 [[nodiscard]] Scene make_example_scene(const ExampleReading& reading);
 
 }  // namespace modelsynth::continuous

@@ -26,6 +26,15 @@ Tope Topes::tope_of(FamilySet sides) const {
     return found->second;
 }
 
+std::optional<std::size_t> Topes::find_family(const Point& normal) const {
+    for (std::size_t family = 0; family < family_count(); ++family) {
+        if (std::abs(normals_[family].dot(normal.normalized())) > 1 - 1e-9) {
+            return family;
+        }
+    }
+    return std::nullopt;
+}
+
 Result<Topes> Topes::make(std::vector<Point> normals) {
     Topes topes;
     topes.normals_ = std::move(normals);

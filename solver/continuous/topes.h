@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -79,6 +80,9 @@ class Topes {
     [[nodiscard]] std::size_t line_of(std::size_t a, std::size_t b) const {
         return line_of_[a * normals_.size() + b];
     }
+
+    // The family that a direction or its opposite, of any length, is normal to.
+    [[nodiscard]] std::optional<std::size_t> find_family(const Point& normal) const;
 
   private:
     Topes() = default;

@@ -1,5 +1,7 @@
 #include "solver/registry/task.h"
 
+#include "solver/continuous/problem_cache.h"
+#include "solver/continuous/reading.h"
 #include "solver/continuous/scene.h"
 #include "solver/continuous/surface.h"
 #include "solver/continuous/synthesis.h"
@@ -49,6 +51,10 @@ bool is_made_in_one_pass(const discrete::Parameters& parameters, const discrete:
 }
 
 }  // namespace
+
+Preparations::Preparations() : continuous(std::make_unique<continuous::ProblemCache>()) {}
+
+Preparations::~Preparations() = default;
 
 std::string_view solver_of(const Example& example) {
     return std::visit(
@@ -161,7 +167,7 @@ Result<std::shared_ptr<const ModelSpace>> space_of(
         return make_grid_space(*grid, model_size(parameters));
     }
     return preparations.continuous
-        .find_or_make(std::get<Solids>(example), std::get<continuous::Parameters>(parameters))
+        ->find_or_make(std::get<Solids>(example), std::get<continuous::Parameters>(parameters))
         .map([](auto problem) -> Space { return make_vertex_space(std::move(problem)); });
 }
 
@@ -202,7 +208,7 @@ Result<Finished> run_continuous(
 ) {
     const auto& parameters = std::get<continuous::Parameters>(task.parameters);
     const auto problem =
-        preparations.continuous.find_or_make(std::get<Solids>(task.example), parameters);
+        preparations.continuous->find_or_make(std::get<Solids>(task.example), parameters);
     if (!problem) {
         return tl::unexpected(problem.error());
     }

@@ -2,8 +2,6 @@
 
 #include "solver/continuous/analysis.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/problem_cache.h"
-#include "solver/continuous/reading.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
 #include "solver/core/synthesis_stats.h"
@@ -22,6 +20,11 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+
+namespace modelsynth::continuous {
+class ExampleReading;
+class ProblemCache;
+}  // namespace modelsynth::continuous
 
 namespace modelsynth {
 
@@ -72,8 +75,11 @@ struct Task {
 // What solvers keep from task to task, so that requests that differ in their seed alone need not
 // begin from nothing. It changes no result. Thread-safe.
 struct Preparations {
+    Preparations();
+    ~Preparations();
+
     discrete::PreparationCache discrete;
-    continuous::ProblemCache continuous;
+    std::unique_ptr<continuous::ProblemCache> continuous;
 };
 
 // What the labels of a task's model stand for. Fails: as run(), where the example and the

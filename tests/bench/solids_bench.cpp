@@ -43,8 +43,8 @@ constexpr std::array kWork = {
     Work{"pentagons", {38, 5, 38}, "2 004, 1.1 min"},
     Work{"oil_platform", {34, 12, 34}, "1 377, 0.5 min"},
     Work{"buildings", {40, 8, 40}, "2 230, 1.4 min"},
-    Work{"spaceships", {60, 12, 60}, "4 164, 0.6 min"},
-    Work{"roads", {450, 18, 450}, "6 888, 0.2 min"},
+    Work{"spaceships", {46, 12, 46}, "4 164, 0.6 min"},
+    Work{"roads", {150, 6, 150}, "6 888, 0.2 min"},
     Work{"plumbing", {32, 14, 32}, "7 422, 0.8 min"},
     Work{"roller_coaster", {30, 12, 30}, "1 376, 1.8 min"},
 };

@@ -122,6 +122,7 @@ def test_a_dimension_holds(server):
     dimension = {"kind": "dimension", "object": "wall", "normal": [-2, 0, 0]}
     job = make(server, parameters={"size": SIZE, "density": 0.6, "constraints": [dimension]})
     walls = triangles_by_material(model_of(server, job))["wall"]
+    assert walls
     # Walls end at every plane x = k that meets them: no triangle reaches across one.
     for triangle in walls:
         xs = [x for (x, _, _) in triangle]

@@ -2,7 +2,7 @@
 
 #include "solver/continuous/check/flat.h"
 #include "solver/continuous/families.h"
-#include "solver/continuous/triangulation.h"
+#include "solver/continuous/triangulation/triangulation.h"
 
 #include <Eigen/Geometry>
 

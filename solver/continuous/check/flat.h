@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/continuous/example.h"
-#include "solver/continuous/triangulation.h"
+#include "solver/continuous/triangulation/triangulation.h"
 
 #include <Eigen/Core>
 

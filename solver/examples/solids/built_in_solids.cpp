@@ -50,17 +50,6 @@ std::shared_ptr<const ExampleReading> read(std::size_t number) {
 
 }  // namespace
 
-const std::vector<std::string_view>& solid_names() {
-    static const std::vector<std::string_view> names = [] {
-        std::vector<std::string_view> list;
-        for (const Entry& entry : kEntries) {
-            list.push_back(entry.name);
-        }
-        return list;
-    }();
-    return names;
-}
-
 std::shared_ptr<const ExampleReading> find_solids(std::string_view name) {
     const auto found = std::find_if(kEntries.begin(), kEntries.end(), [name](const Entry& entry) {
         return entry.name == name;

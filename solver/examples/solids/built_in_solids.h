@@ -10,7 +10,6 @@ namespace modelsynth::examples {
 
 // The built-in examples of continuous model synthesis. Each is read on first use, which takes up to
 // some tenths of a second, and kept. Their names are their ids. Thread-safe.
-[[nodiscard]] const std::vector<std::string_view>& solid_names();
 
 // Null when there is none of that name.
 [[nodiscard]] std::shared_ptr<const continuous::ExampleReading> find_solids(std::string_view name);

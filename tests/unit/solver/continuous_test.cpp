@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -267,6 +268,68 @@ TEST(Continuous, RefusesTooManyPlanes) {
     );
     ASSERT_FALSE(problem);
     EXPECT_EQ(problem.error().code, ErrorCode::kTooLarge);
+}
+
+TEST(Continuous, StopsWhenItIsAskedTo) {
+    const Reading reading = read(plain({box(1, {0, 0, 0}, {1, 1, 1})}));
+    const Parameters parameters = of_size(reading->example(), {9, 9, 9});
+    const Problem problem = make_problem(reading, parameters).value();
+    std::stop_source stop;
+    stop.request_stop();
+    Silent silent;
+    const auto made = synthesise(problem, parameters, 1, silent, stop.get_token());
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, ErrorCode::kCancelled);
+}
+
+TEST(Figures, AreNotMoreThanAllowed) {
+    const Reading reading = read(plain({tetrahedron(1)}));
+    std::vector<Figure> all;
+    for (std::size_t label = 0; label < reading->figures().count(); ++label) {
+        all.push_back(reading->figures().at(static_cast<Label>(label)));
+    }
+    EXPECT_TRUE(Figures::make(reading->topes(), all, 16));
+    const auto fewer = Figures::make(reading->topes(), all, 15);
+    ASSERT_FALSE(fewer);
+    EXPECT_EQ(fewer.error().code, ErrorCode::kTooLarge);
+}
+
+TEST(Reading, RefusesWhatItCannotBeginWithOrIsTooMuch) {
+    Example covered = plain({box(2, {-5, 0, -5}, {5, 1, 5}), tetrahedron(3)}, ObjectId{1});
+    covered.bounds = Bounds{{-2, -2, -2}, {2, 2, 2}};
+    const auto no_ground = ExampleReading::make(std::move(covered));
+    ASSERT_FALSE(no_ground);
+    EXPECT_EQ(no_ground.error().code, ErrorCode::kInvalidArgument);
+
+    Outline round;
+    for (int i = 0; i < 80; ++i) {
+        const double angle = 2 * 3.14159265358979323846 * i / 80;
+        round.push_back({std::cos(angle), std::sin(angle)});
+    }
+    const auto many = ExampleReading::make(plain({examples::prism_upwards(1, round, 0, 1)}));
+    ASSERT_FALSE(many);
+    EXPECT_EQ(many.error().code, ErrorCode::kTooLarge);
+}
+
+TEST(Arrangement, RefusesPlanesThatNearlyMeet) {
+    const Reading reading = read(plain({tetrahedron(1)}));
+    const Topes& topes = reading->topes();
+    const auto meets = [&](double miss) {
+        const Point middle(2, 2, 2);
+        std::vector<PlaneOffsets> planes;
+        for (const Point& normal : topes.normals()) {
+            planes.push_back({normal.dot(middle)});
+        }
+        planes.back().front() += miss;
+        return Arrangement::make(topes, planes, {{{0, 0, 0}, {4, 4, 4}}, {4, 4, 4}, 1}, 100);
+    };
+    ASSERT_TRUE(meets(0));
+    EXPECT_EQ(meets(0)->vertex_count(), 1U);
+    ASSERT_TRUE(meets(1e-3));
+    EXPECT_EQ(meets(1e-3)->vertex_count(), 4U);
+    const auto unclear = meets(1e-8);
+    ASSERT_FALSE(unclear);
+    EXPECT_EQ(unclear.error().code, ErrorCode::kInvalidArgument);
 }
 
 }  // namespace

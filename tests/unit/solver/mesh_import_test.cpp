@@ -5,7 +5,7 @@
 #include "solver/continuous/families.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/reading.h"
-#include "solver/continuous/triangulation.h"
+#include "solver/continuous/triangulation/triangulation.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
 #include "solver/mesh/glb_writer.h"

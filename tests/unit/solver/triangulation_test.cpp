@@ -1,4 +1,4 @@
-#include "solver/continuous/triangulation.h"
+#include "solver/continuous/triangulation/triangulation.h"
 
 #include <gtest/gtest.h>
 
