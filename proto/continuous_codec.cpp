@@ -1,6 +1,7 @@
 #include "proto/continuous_codec.h"
 
 #include "proto/blocks_codec.h"
+#include "proto/region_codec.h"
 
 #include <utility>
 
@@ -8,9 +9,17 @@ namespace modelsynth::proto {
 
 namespace {
 
+using continuous::ConnectedRule;
+using continuous::Constraint;
 using continuous::DimensionRule;
+using continuous::FixedRule;
+using continuous::ForbiddenRule;
+using continuous::MetreBox;
 using continuous::Parameters;
 using continuous::Point;
+using continuous::ProbabilityRule;
+using continuous::Region;
+using continuous::Rule;
 
 constexpr double kMetresMax = 1e5;
 
@@ -45,33 +54,136 @@ void read_weights(const Value& value, const RequestLimits& limits, Parameters& p
     }
 }
 
-void read_constraints(const Value& value, const RequestLimits& limits, Parameters& parameters) {
-    parameters.dimensions.emplace();
-    const auto values = value.array(0, limits.constraints_max);
-    if (!values) {
-        return;
+std::optional<MetreBox> read_metre_box(const Value& value) {
+    ObjectReader reader(value);
+    const auto min_value = reader.required("min");
+    const auto max_value = reader.required("max");
+    reader.finish();
+    const auto min = min_value ? read_point(*min_value, kMetresMax) : std::nullopt;
+    const auto max = max_value ? read_point(*max_value, kMetresMax) : std::nullopt;
+    if (!min || !max) {
+        return std::nullopt;
     }
-    for (const Value& constraint : *values) {
-        DimensionRule rule;
-        ObjectReader reader(constraint);
-        if (const auto kind = reader.required("kind")) {
-            static_cast<void>(kind->one_of({"dimension"}));
+    if ((min->array() >= max->array()).any()) {
+        value.fault("max must be beyond min along every axis");
+    }
+    return MetreBox{{min->x(), min->y(), min->z()}, {max->x(), max->y(), max->z()}};
+}
+
+Region read_metre_region(ObjectReader& reader, const RequestLimits& limits) {
+    Region region;
+    if (const auto box = reader.optional("box")) {
+        region.box = read_metre_box(*box);
+    }
+    if (const auto mask = reader.optional("mask")) {
+        region.mask = read_mask(*mask, limits);
+    }
+    if (const auto voxels = reader.optional("voxels")) {
+        region.voxels = read_voxels(*voxels, limits);
+    }
+    return region;
+}
+
+DimensionRule read_dimension(ObjectReader& reader) {
+    DimensionRule rule;
+    if (const auto normal = reader.required("normal")) {
+        const auto direction = read_point(*normal, kMetresMax);
+        if (direction && direction->norm() < 1e-9) {
+            normal->fault("must have a length");
         }
+        if (direction) {
+            rule.normal = {direction->x(), direction->y(), direction->z()};
+        }
+    }
+    if (const auto spacings = reader.optional("spacings")) {
+        rule.spacings =
+            static_cast<std::int32_t>(spacings->integer(1, continuous::kCellsAlongMax).value_or(1));
+    }
+    return rule;
+}
+
+Rule read_rule(std::size_t kind, ObjectReader& reader) {
+    switch (kind) {
+        case 0:
+            return read_dimension(reader);
+        case 1: {
+            ConnectedRule rule;
+            if (const auto components = reader.optional("components")) {
+                rule.components =
+                    static_cast<std::uint32_t>(components->integer(1, 1000).value_or(1));
+            }
+            return rule;
+        }
+        case 2:
+            return FixedRule{};
+        case 3:
+            return ForbiddenRule{};
+        default: {
+            ProbabilityRule rule;
+            if (const auto weight = reader.required("weight")) {
+                rule.weight = weight->number(0, 1e6).value_or(1);
+            }
+            return rule;
+        }
+    }
+}
+
+std::optional<Constraint> read_constraint(const Value& value, const RequestLimits& limits) {
+    ObjectReader reader(value);
+    const auto kind_value = reader.required("kind");
+    const auto kind = kind_value ? kind_value->one_of(continuous::kRuleNames) : std::nullopt;
+    if (!kind) {
+        return std::nullopt;
+    }
+    Constraint constraint;
+    constraint.rule = read_rule(*kind, reader);
+    if (std::holds_alternative<DimensionRule>(constraint.rule)) {
         if (const auto object = reader.required("object")) {
-            rule.object = object->string(limits.name_characters_max).value_or("");
+            constraint.objects = {object->string(limits.name_characters_max).value_or("")};
         }
-        if (const auto normal = reader.required("normal")) {
-            const auto direction = read_point(*normal, kMetresMax);
-            if (direction && direction->norm() < 1e-9) {
-                normal->fault("must have a length");
-            }
-            if (direction) {
-                rule.normal = {direction->x(), direction->y(), direction->z()};
-            }
-        }
-        reader.finish();
-        parameters.dimensions->push_back(std::move(rule));
+    } else if (const auto objects = reader.required("objects")) {
+        constraint.objects =
+            objects->strings(0, continuous::kObjectTypesMax, limits.name_characters_max)
+                .value_or(std::vector<std::string>());
     }
+    if (continuous::has_region(constraint.rule)) {
+        constraint.region = read_metre_region(reader, limits);
+    }
+    reader.finish();
+    return constraint;
+}
+
+std::vector<Constraint> read_constraints(const Value& value, const RequestLimits& limits) {
+    std::vector<Constraint> constraints;
+    if (const auto values = value.array(0, limits.constraints_max)) {
+        for (const Value& one : *values) {
+            if (auto constraint = read_constraint(one, limits)) {
+                constraints.push_back(std::move(*constraint));
+            }
+        }
+    }
+    return constraints;
+}
+
+OrderedJson write_constraint(const Constraint& constraint) {
+    OrderedJson written = {{"kind", continuous::kRuleNames[constraint.rule.index()]}};
+    if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
+        written["object"] = constraint.objects.front();
+        written["normal"] = dimension->normal;
+        written["spacings"] = dimension->spacings;
+        return written;
+    }
+    written["objects"] = constraint.objects;
+    if (const auto* connected = std::get_if<ConnectedRule>(&constraint.rule)) {
+        written["components"] = connected->components;
+    } else if (const auto* probability = std::get_if<ProbabilityRule>(&constraint.rule)) {
+        written["weight"] = probability->weight;
+    }
+    if (const auto& box = constraint.region.box) {
+        written["box"] = {{"min", box->min}, {"max", box->max}};
+    }
+    write_fields(constraint.region.mask, constraint.region.voxels, written);
+    return written;
 }
 
 }  // namespace
@@ -115,7 +227,7 @@ Parameters read_continuous_parameters(const Value& value, const RequestLimits& l
         read_weights(*weights, limits, parameters);
     }
     if (const auto constraints = reader.optional("constraints")) {
-        read_constraints(*constraints, limits, parameters);
+        parameters.constraints = read_constraints(*constraints, limits);
     }
     reader.finish();
     return parameters;
@@ -127,10 +239,8 @@ OrderedJson write_parameters(const Parameters& parameters) {
         weights[name] = weight;
     }
     OrderedJson constraints = OrderedJson::array();
-    for (const DimensionRule& rule : *parameters.dimensions) {
-        constraints.push_back(
-            {{"kind", "dimension"}, {"object", rule.object}, {"normal", rule.normal}}
-        );
+    for (const Constraint& constraint : *parameters.constraints) {
+        constraints.push_back(write_constraint(constraint));
     }
     return {
         {"size", *parameters.size},

@@ -44,7 +44,9 @@ std::vector<Cell> read_cells(const Value& value, const RequestLimits& limits) {
     return cells;
 }
 
-std::optional<discrete::Voxels> read_voxels(const Value& value, const RequestLimits& limits) {
+}  // namespace
+
+std::optional<Voxels> read_voxels(const Value& value, const RequestLimits& limits) {
     ObjectReader reader(value);
     const auto size_value = reader.required("size");
     const auto values_value = reader.required("values");
@@ -54,7 +56,7 @@ std::optional<discrete::Voxels> read_voxels(const Value& value, const RequestLim
     if (!size || !values) {
         return std::nullopt;
     }
-    discrete::Voxels voxels = {{size->x, size->y, size->z}, {}};
+    Voxels voxels = {{size->x, size->y, size->z}, {}};
     if (values->size() != voxels.size.cell_count()) {
         values_value->fault(
             "has " + std::to_string(values->size()) + " values; its size asks for " +
@@ -69,7 +71,7 @@ std::optional<discrete::Voxels> read_voxels(const Value& value, const RequestLim
     return voxels;
 }
 
-std::optional<discrete::Mask> read_mask(const Value& value, const RequestLimits& limits) {
+std::optional<Mask> read_mask(const Value& value, const RequestLimits& limits) {
     if (!value.json().is_string()) {
         value.fault("must be an image: a data: URI of a PNG");
         return std::nullopt;
@@ -80,10 +82,8 @@ std::optional<discrete::Mask> read_mask(const Value& value, const RequestLimits&
         value.fault(image.error().message, image.error().code == ErrorCode::kTooLarge);
         return std::nullopt;
     }
-    return discrete::Mask{image->width, image->height, std::move(image->values), text};
+    return Mask{image->width, image->height, std::move(image->values), text};
 }
-
-}  // namespace
 
 Region read_region(ObjectReader& reader, const RequestLimits& limits) {
     Region region;
@@ -116,14 +116,19 @@ void write_region(const Region& region, OrderedJson& written) {
         }
         written["cells"] = std::move(cells);
     }
-    if (region.mask) {
-        written["mask"] = region.mask->source;
+    write_fields(region.mask, region.voxels, written);
+}
+
+void write_fields(
+    const std::optional<Mask>& mask, const std::optional<Voxels>& voxels, OrderedJson& written
+) {
+    if (mask) {
+        written["mask"] = mask->source;
     }
-    if (region.voxels) {
-        const GridSize size = region.voxels->size;
+    if (voxels) {
         written["voxels"] = {
-            {"size", OrderedJson::array({size.x, size.y, size.z})},
-            {"values", region.voxels->values}};
+            {"size", OrderedJson::array({voxels->size.x, voxels->size.y, voxels->size.z})},
+            {"values", voxels->values}};
     }
 }
 

@@ -4,7 +4,10 @@
 
 #include "proto/json.h"
 #include "proto/limits.h"
+#include "solver/core/masks.h"
 #include "solver/discrete/parameters.h"
+
+#include <optional>
 
 namespace modelsynth::proto {
 
@@ -13,6 +16,13 @@ namespace modelsynth::proto {
 
 // Puts the fields of a region with what is written of the object.
 void write_region(const discrete::Region& region, OrderedJson& written);
+
+// Its last two by themselves, as other regions have them.
+[[nodiscard]] std::optional<Mask> read_mask(const Value& value, const RequestLimits& limits);
+[[nodiscard]] std::optional<Voxels> read_voxels(const Value& value, const RequestLimits& limits);
+void write_fields(
+    const std::optional<Mask>& mask, const std::optional<Voxels>& voxels, OrderedJson& written
+);
 
 [[nodiscard]] OrderedJson write_cell(const Cell& cell);
 

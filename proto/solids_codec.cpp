@@ -202,22 +202,35 @@ class SolidsReader {
         }
         if (const auto dimensions = reader_.optional("dimensions")) {
             for (const Value& value : dimensions->array(0, 256).value_or(NoValues())) {
-                ObjectReader reader(value);
-                continuous::Dimension dimension;
-                if (const auto object = reader.required("object")) {
-                    dimension.object = object_named(*object);
-                }
-                if (const auto normal = reader.required("normal")) {
-                    const auto point = read_point(*normal, kMetresMax);
-                    dimension.normal = point.value_or(dimension.normal);
-                    if (dimension.normal.norm() < 1e-9) {
-                        normal->fault("must have a length");
-                    }
-                }
-                reader.finish();
-                example_.dimensions.push_back(dimension);
+                read_dimension(value);
             }
         }
+        if (const auto connected = reader_.optional("connected")) {
+            for (const Value& value : connected->array(0, 256).value_or(NoValues())) {
+                std::vector<ObjectId>& together = example_.connected.emplace_back();
+                for (const Value& object :
+                     value.array(1, continuous::kObjectTypesMax).value_or(NoValues())) {
+                    together.push_back(object_named(object));
+                }
+            }
+        }
+    }
+
+    void read_dimension(const Value& value) {
+        ObjectReader reader(value);
+        continuous::Dimension dimension;
+        if (const auto object = reader.required("object")) {
+            dimension.object = object_named(*object);
+        }
+        if (const auto normal = reader.required("normal")) {
+            const auto point = read_point(*normal, kMetresMax);
+            dimension.normal = point.value_or(dimension.normal);
+            if (dimension.normal.norm() < 1e-9) {
+                normal->fault("must have a length");
+            }
+        }
+        reader.finish();
+        example_.dimensions.push_back(dimension);
     }
 
     using NoValues = std::vector<Value>;
@@ -288,6 +301,13 @@ OrderedJson write_solids(const continuous::Example& example) {
              {"normal", write_point(dimension.normal)}}
         );
     }
+    OrderedJson connected = OrderedJson::array();
+    for (const std::vector<ObjectId>& objects : example.connected) {
+        OrderedJson& names = connected.emplace_back(OrderedJson::array());
+        for (const ObjectId object : objects) {
+            names.push_back(example.objects[object - 1U].name);
+        }
+    }
     OrderedJson written = {
         {"kind", "continuous"},
         {"name", example.name},
@@ -296,6 +316,7 @@ OrderedJson write_solids(const continuous::Example& example) {
         {"objects", write_objects(example)},
         {"polyhedra", std::move(polyhedra)},
         {"dimensions", std::move(dimensions)},
+        {"connected", std::move(connected)},
         {"spacing", example.spacing},
         {"size", example.size},
         {"density", example.density}};

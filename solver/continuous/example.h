@@ -70,8 +70,11 @@ struct Example {
     // Only what is strictly inside is example: solids may leave it, and are as if they went on for
     // ever. None: all of it.
     std::optional<Bounds> bounds;
-    std::vector<Dimension> dimensions;  // that hold for its models unless a request says otherwise
-    double spacing = 1;                 // default distance of parallel planes, metres
+    // What holds for its models unless a request says otherwise: dimensions, and objects of which
+    // all together hang together (thesis 4.6.2).
+    std::vector<Dimension> dimensions;
+    std::vector<std::vector<ObjectId>> connected;
+    double spacing = 1;                        // default distance of parallel planes, metres
     std::array<double, 3> size = {20, 8, 20};  // default size of a model, metres
     double density = 0.3;                      // default; see Parameters
 };

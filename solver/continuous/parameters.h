@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/continuous/constraints.h"
 #include "solver/core/block_schedule.h"
 #include "solver/core/grid.h"
 #include "solver/core/result.h"
@@ -13,14 +14,6 @@
 
 namespace modelsynth::continuous {
 
-// The example's Dimension, as requests name it.
-struct DimensionRule {
-    std::string object;
-    std::array<double, 3> normal = {0, 1, 0};  // need not be of unit length
-
-    friend bool operator==(const DimensionRule&, const DimensionRule&) = default;
-};
-
 // What a continuous synthesis can be asked for; plain data.
 struct Parameters {
     std::optional<std::array<double, 3>> size;  // metres; none: the example's default
@@ -32,24 +25,19 @@ struct Parameters {
     std::optional<double> density;
     // Weights of figures by the object types in them; those not named have the example's.
     std::vector<std::pair<std::string, double>> weights;
-    std::optional<std::vector<DimensionRule>> dimensions;  // none: the example's
+    // None: the example's. Of a kind that none of them is of, those of the example hold, too; no
+    // constraint at all: none whatever.
+    std::optional<std::vector<Constraint>> constraints;
 
     friend bool operator==(const Parameters&, const Parameters&) = default;
 };
 
 inline constexpr std::int32_t kCellsAlongMax = 4096;
 
-class ExampleReading;
 struct Example;
 
 // The parameters with every default filled in from the example.
 [[nodiscard]] Parameters fill_defaults(Parameters parameters, const Example& example);
-
-// What cannot be done of them; pointers are relative to the parameters. Requires: defaults filled
-// in.
-[[nodiscard]] std::vector<Fault> find_faults(
-    const ExampleReading& reading, const Parameters& parameters
-);
 
 // The model's size in spacings, cut ones counted whole. Requires: defaults filled in.
 [[nodiscard]] GridSize cells_of(const Parameters& parameters);

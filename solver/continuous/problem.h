@@ -1,10 +1,10 @@
 #pragma once
 
 #include "solver/continuous/arrangement.h"
+#include "solver/continuous/connections.h"
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
-#include "solver/core/graph_topology.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
@@ -23,20 +23,19 @@ struct Problem {
     Arrangement arrangement;
     SiteDomains domains;
     SiteWeights weights;
-    // Empty space, or the bare ground: consistent from the beginning, and what stands at the border
-    // of the model for good.
+    // Empty space, or the bare ground, but for what constraints ask for: consistent from the
+    // beginning, and what stands at the border of the model for good.
     std::vector<Label> initial;
     // Figures of the example that no vertex of the model can have.
     std::vector<Label> homeless;
+    std::vector<Connection> connections;
 };
 
 // Requires: every parameter has a value.
-// Fails: kTooLarge, kInvalidArgument; see Arrangement::make().
+// Fails: kTooLarge, kInvalidArgument; see Arrangement::make() and make_weights(); kContradiction,
+// kGaveUp; see find_initial_labels().
 [[nodiscard]] Result<Problem> make_problem(
     std::shared_ptr<const ExampleReading> reading, const Parameters& parameters
 );
-
-// The vertices of a box of cells as a part to be made anew.
-[[nodiscard]] GraphPart part_of(const Arrangement& arrangement, const Box& cells);
 
 }  // namespace modelsynth::continuous

@@ -48,6 +48,18 @@ struct Pin {
     const LabelSet* labels = nullptr;
 };
 
+// Has the last word on labels that relations and constraints allow.
+class PartJudge {
+  public:
+    PartJudge() = default;
+    PartJudge(const PartJudge&) = delete;
+    PartJudge& operator=(const PartJudge&) = delete;
+    virtual ~PartJudge() = default;
+
+    // `model` has the new labels. False: they are taken back, and the next attempt is made.
+    [[nodiscard]] virtual bool accepts(std::span<const Label> model) = 0;
+};
+
 struct BlockOptions {
     std::uint32_t attempts = 8;
     Order order = Order::kScan;  // of the odd attempts; see attempt_plan()
@@ -56,10 +68,14 @@ struct BlockOptions {
     // their board stands with it; the same is so afterwards. Null: none.
     ConstraintBoard* board = nullptr;
     std::optional<Pin> pin = std::nullopt;
-    const LabelChooser* chooser = nullptr;    // in place of the weights alone; null: none
+    const LabelChooser* chooser = nullptr;  // in place of the weights alone; null: none
+    PartJudge* judge = nullptr;             // of every attempt that comes to its end; null: none
+    // Sites all of whose labels are of one of these sets come before all others, whatever the
+    // order: what the sets are of grows from where it was begun.
+    std::span<const LabelSet> growing = {};
     std::span<std::uint32_t> dead_ends = {};  // by site of the part, as of SearchAids
-    // After all attempts, which may be none, CaDiCaL is asked, when there is no board; none: it is
-    // not.
+    // After all attempts, which may be none, CaDiCaL is asked, when there is neither board nor
+    // judge; none: it is not.
     std::optional<SatLimits> by_sat = std::nullopt;
 };
 
@@ -280,8 +296,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
                 result.outcome = BlockOutcome::kStopped;
                 return result;
             }
-            if (outcome == SearchOutcome::kSolved) {
-                write(part, model);
+            if (outcome == SearchOutcome::kSolved &&
+                write_if_accepted(part, model, options.judge)) {
                 result.outcome = BlockOutcome::kAccepted;
                 result.solved_by = plan.is_other_order                     ? SolvedBy::kOtherOrder
                                    : result.backtracks > backtracks_before ? SolvedBy::kBacktracking
@@ -292,7 +308,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         }
         result.attempts = options.attempts;
         result.outcome = BlockOutcome::kReverted;
-        if (options.by_sat && options.board == nullptr) {
+        if (options.by_sat && options.board == nullptr && options.judge == nullptr) {
             ask_sat(part, model, *options.by_sat, key, stop, result);
         }
         return result;
@@ -406,19 +422,18 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         const PartWeights weights = {weights_, weight_numbers_};
         const Order order = plan.is_other_order ? other_order(options.order) : options.order;
         const SearchAids aids = {options.board, chooser, options.dead_ends};
+        const auto search_with = [&](auto picker) {
+            Search search(*catalog_, picker, weights, aids, random, stop);
+            const SearchOutcome outcome = search.run(plan.budget);
+            backtracks += search.backtracks();
+            return outcome;
+        };
+        if (!options.growing.empty()) {
+            const std::vector<Site> shuffled = shuffled_sites(topology_->site_count(), random);
+            return search_with(GrowthPicker(*catalog_, options.growing, shuffled, random));
+        }
         return with_picker(
-            order,
-            *catalog_,
-            *topology_,
-            options.scan,
-            weights,
-            random,
-            [&](auto picker) {
-                Search search(*catalog_, picker, weights, aids, random, stop);
-                const SearchOutcome outcome = search.run(plan.budget);
-                backtracks += search.backtracks();
-                return outcome;
-            }
+            order, *catalog_, *topology_, options.scan, weights, random, search_with
         );
     }
 
@@ -430,6 +445,21 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         part.for_each_site([&](Site inside, Site whole) {
             weight_numbers_[inside] = weights_.number(whole);
         });
+    }
+
+    bool write_if_accepted(const Part& part, std::span<Label> model, PartJudge* judge) {
+        if (judge == nullptr) {
+            write(part, model);
+            return true;
+        }
+        before_.resize(catalog_->site_count());
+        part.for_each_site([&](Site inside, Site whole) { before_[inside] = model[whole]; });
+        write(part, model);
+        if (judge->accepts(model)) {
+            return true;
+        }
+        part.for_each_site([&](Site inside, Site whole) { model[whole] = before_[inside]; });
+        return false;
     }
 
     void write(const Part& part, std::span<Label> model) const {
@@ -447,6 +477,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     std::vector<std::uint16_t> numbers_;             // of the sites' domains
     std::vector<std::uint16_t> weight_numbers_;      // of the sites' weights; empty: all the same
     std::vector<Word> start_;                        // what the surroundings leave
+    std::vector<Label> before_;                      // the part's labels, while they are judged
     Site impossible_ = 0;                            // where they leave nothing
 };
 

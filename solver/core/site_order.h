@@ -5,6 +5,7 @@
 #include "solver/core/site_weights.h"
 #include "solver/core/topology.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -60,6 +61,81 @@ template <class CatalogType, Topology T>
     }
     return order;
 }
+
+// Hands out sites that have to take a label of one of some sets first, at random, and others in a
+// fixed order.
+class GrowthPicker {
+  public:
+    static constexpr bool kFollowsChanges = true;
+
+    // Requires: sets and order outlive it; `order` has every site once.
+    template <class CatalogType>
+    GrowthPicker(
+        CatalogType& catalog,
+        std::span<const LabelSet> sets,
+        std::span<const Site> order,
+        RandomStream& random
+    )
+        : sets_(sets), rest_(order), random_(random), is_listed_(order.size()) {
+        catalog.track_changes();
+        catalog.clear_changed();
+        for (std::size_t site = 0; site < order.size(); ++site) {
+            list_if_bound(catalog, static_cast<Site>(site));
+        }
+    }
+
+    template <class CatalogType>
+    bool next(CatalogType& catalog, Site& site) {
+        for (const Site changed : catalog.changed()) {
+            list_if_bound(catalog, changed);
+        }
+        catalog.clear_changed();
+        while (!bound_.empty()) {
+            const std::uint32_t at = random_.below(static_cast<std::uint32_t>(bound_.size()));
+            site = bound_[at];
+            if (is_bound(catalog.labels(site))) {
+                return true;
+            }
+            // Decided, or freed again when a choice was taken back.
+            is_listed_[site] = 0;
+            bound_[at] = bound_.back();
+            bound_.pop_back();
+        }
+        return rest_.next(catalog, site);
+    }
+
+    [[nodiscard]] std::size_t position() const { return rest_.position(); }
+
+    void go_back(std::size_t position) { rest_.go_back(position); }
+
+  private:
+    template <class Labels>
+    [[nodiscard]] bool is_bound(const Labels& labels) const {
+        return has_several(labels) &&
+               std::any_of(sets_.begin(), sets_.end(), [&labels](const LabelSet& set) {
+                   for (std::size_t word = 0; word < labels.size(); ++word) {
+                       if ((labels[word] & ~set.words()[word]) != 0) {
+                           return false;
+                       }
+                   }
+                   return true;
+               });
+    }
+
+    template <class CatalogType>
+    void list_if_bound(const CatalogType& catalog, Site site) {
+        if (is_listed_[site] == 0 && is_bound(catalog.labels(site))) {
+            is_listed_[site] = 1;
+            bound_.push_back(site);
+        }
+    }
+
+    std::span<const LabelSet> sets_;
+    ScanPicker rest_;
+    RandomStream& random_;
+    std::vector<std::uint8_t> is_listed_;  // in bound_
+    std::vector<Site> bound_;
+};
 
 // Calls task(picker) with the picker of an order, and gives what it returns.
 // Shape: `scan` has every site once; it outlives the call.

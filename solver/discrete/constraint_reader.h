@@ -2,10 +2,10 @@
 
 #include "solver/core/constraints/constraint_board.h"
 #include "solver/core/result.h"
+#include "solver/core/weight_tables.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/parameters.h"
 #include "solver/discrete/problem.h"
-#include "solver/discrete/weight_tables.h"
 
 #include <memory>
 #include <span>

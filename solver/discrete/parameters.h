@@ -2,6 +2,7 @@
 
 #include "solver/core/block_schedule.h"
 #include "solver/core/grid.h"
+#include "solver/core/masks.h"
 #include "solver/core/search.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/scan_order.h"
@@ -21,25 +22,8 @@ using WeightList = std::vector<std::pair<std::string, double>>;
 using Weights = std::variant<WeightRule, WeightList>;
 
 using modelsynth::Blocks;
-
-// Grey values over x (west to east) and z (north to south), stretched over the model: 0 nothing,
-// 1 all. From an image, whose text is kept so that it can be told again.
-struct Mask {
-    std::int32_t width = 0;
-    std::int32_t depth = 0;
-    std::vector<std::uint8_t> values;  // row by row from the north, 255 is all
-    std::string source;
-
-    friend bool operator==(const Mask&, const Mask&) = default;
-};
-
-// Values 0 ... 1 on a grid of its own that is stretched over the model; as Example::cells.
-struct Voxels {
-    GridSize size;
-    std::vector<double> values;
-
-    friend bool operator==(const Voxels&, const Voxels&) = default;
-};
+using modelsynth::Mask;
+using modelsynth::Voxels;
 
 // Where a constraint holds: in the cells of any of these, or everywhere when none is given.
 struct Region {

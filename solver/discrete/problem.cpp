@@ -1,10 +1,10 @@
 #include "solver/discrete/problem.h"
 
+#include "solver/core/weight_tables.h"
 #include "solver/discrete/constraint_reader.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/region.h"
-#include "solver/discrete/weight_tables.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "solver/registry/task.h"
 
+#include "solver/continuous/faults.h"
 #include "solver/continuous/problem_cache.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/scene.h"

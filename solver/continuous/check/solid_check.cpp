@@ -78,6 +78,7 @@ class SolidCheck {
         check_objects();
         check_bounds();
         check_dimensions();
+        check_connected();
         std::vector<bool> is_sound;
         Eigen::AlignedBox3d box;
         for (std::size_t i = 0; i < example_.polyhedra.size(); ++i) {
@@ -184,6 +185,16 @@ class SolidCheck {
             const Point& normal = example_.dimensions[i].normal;
             if (!is_place(normal) || normal.norm() < 1e-9) {
                 add(pointer + "/normal", "a normal needs a direction");
+            }
+        }
+    }
+
+    void check_connected() {
+        for (std::size_t i = 0; i < example_.connected.size(); ++i) {
+            for (std::size_t j = 0; j < example_.connected[i].size(); ++j) {
+                const std::string pointer =
+                    "/connected/" + std::to_string(i) + "/" + std::to_string(j);
+                check_object(pointer, example_.connected[i][j]);
             }
         }
     }

@@ -131,6 +131,10 @@ Example make_plumbing() {
             }
         }
     }
+    std::vector<ObjectId>& network = example.connected.emplace_back();
+    for (int object = kTank; object < kEnd; ++object) {
+        network.push_back(static_cast<ObjectId>(object));
+    }
     example.spacing = 1;
     example.density = 0.03;
     example.size = {30, 14, 30};

@@ -3,6 +3,7 @@
 #include "solver/examples/solids/turned.h"
 
 #include <string>
+#include <vector>
 
 namespace modelsynth::examples {
 
@@ -146,7 +147,7 @@ Example make_roads() {
         }
     }
     example.objects.push_back({"crossing", kPatched, 1});
-    // Few bends and many forks: long lanes, and one net of them rather than many small rings.
+    // Long lanes with few junctions, since the net goes wherever it can.
     const auto weigh = [&](int from, int to, double weight) {
         for (int object = from; object <= to; ++object) {
             example.objects[static_cast<std::size_t>(object) - 1].weight = weight;
@@ -154,10 +155,10 @@ Example make_roads() {
     };
     weigh(kWall, kRoof, 0.7);
     weigh(kTree, kTreeTop, 0.7);
-    weigh(kAlongX, kAlongZ, 30);
-    weigh(kBend, kBend + 3, 4);
-    weigh(kFork, kFork + 3, 20);
-    weigh(kCrossing, kCrossing, 60);
+    weigh(kAlongX, kAlongZ, 200);
+    weigh(kBend, kBend + 3, 1.5);
+    weigh(kFork, kFork + 3, 1);
+    weigh(kCrossing, kCrossing, 0.5);
     example.ground = kGrass;
 
     lay_roads(example);
@@ -174,7 +175,12 @@ Example make_roads() {
         example.dimensions.push_back({static_cast<ObjectId>(kind), across_x});
         example.dimensions.push_back({static_cast<ObjectId>(kind), across_z});
     }
+    std::vector<ObjectId>& network = example.connected.emplace_back();
+    for (int road = kAlongX; road <= kCrossing; ++road) {
+        network.push_back(static_cast<ObjectId>(road));
+    }
     example.spacing = kUnit;
+    example.density = 0.9;
     example.size = {120, 9, 120};
     return example;
 }

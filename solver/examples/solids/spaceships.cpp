@@ -143,6 +143,10 @@ Example make_spaceships() {
         {kFlame, y},
         {kFin, x},
         {kBridge, y}};
+    std::vector<ObjectId>& ship = example.connected.emplace_back();
+    for (int object = kHull; object <= kBridge; ++object) {
+        ship.push_back(static_cast<ObjectId>(object));
+    }
     example.spacing = 1;
     example.size = {40, 12, 40};
     example.density = 0.06;

@@ -1,5 +1,6 @@
 // Continuous synthesis: what is read of an example, where planes lie, and what is made.
 
+#include "solver/continuous/faults.h"
 #include "solver/continuous/problem.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"

@@ -1,4 +1,4 @@
-#include "solver/discrete/weight_tables.h"
+#include "solver/core/weight_tables.h"
 
 #include <gtest/gtest.h>
 

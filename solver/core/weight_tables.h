@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace modelsynth::discrete {
+namespace modelsynth {
 
 // More different tables of weights than this are refused: a table for each value that
 // probabilities have in some cell together.
@@ -35,4 +35,4 @@ class WeightTables {
     std::map<std::tuple<std::uint16_t, std::size_t, double>, std::uint16_t> products_;
 };
 
-}  // namespace modelsynth::discrete
+}  // namespace modelsynth

@@ -1,9 +1,9 @@
-#include "solver/discrete/weight_tables.h"
+#include "solver/core/weight_tables.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace modelsynth::discrete {
+namespace modelsynth {
 
 namespace {
 
@@ -48,4 +48,4 @@ SiteWeights WeightTables::finish() && {
     return {std::move(tables), std::move(table_of_site_)};
 }
 
-}  // namespace modelsynth::discrete
+}  // namespace modelsynth

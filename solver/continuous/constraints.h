@@ -1,0 +1,97 @@
+#pragma once
+
+#include "solver/core/masks.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace modelsynth::continuous {
+
+// Metres, in the model's frame.
+struct MetreBox {
+    std::array<double, 3> min = {};
+    std::array<double, 3> max = {};
+
+    friend bool operator==(const MetreBox&, const MetreBox&) = default;
+};
+
+// Where a constraint holds: in any of these, or everywhere when none is given.
+struct Region {
+    std::optional<MetreBox> box = std::nullopt;
+    std::optional<Mask> mask = std::nullopt;  // through the whole height
+    std::optional<Voxels> voxels = std::nullopt;
+
+    friend bool operator==(const Region&, const Region&) = default;
+};
+
+// What a constraint asks of the objects it names.
+
+// The object is exactly so many spacings wide across the planes of a normal (thesis 4.6.1). Wider
+// than one, it begins and ends at every so manieth plane from the origin only.
+struct DimensionRule {
+    std::array<double, 3> normal = {0, 1, 0};  // need not be of unit length
+    std::int32_t spacings = 1;                 // >= 1
+
+    friend bool operator==(const DimensionRule&, const DimensionRule&) = default;
+};
+
+// All of the objects together hang together in so many components at most (thesis 4.6.2). What
+// touches, be it at a corner, hangs together. >= 1.
+struct ConnectedRule {
+    std::uint32_t components = 1;
+
+    friend bool operator==(const ConnectedRule&, const ConnectedRule&) = default;
+};
+
+// Nothing but these objects; "empty" names empty space.
+struct FixedRule {
+    friend bool operator==(const FixedRule&, const FixedRule&) = default;
+};
+
+// None of these objects; "empty" names empty space.
+struct ForbiddenRule {
+    friend bool operator==(const ForbiddenRule&, const ForbiddenRule&) = default;
+};
+
+// Weights of figures in which any of the objects takes part are multiplied by this (thesis 4.6.3),
+// by 1 + value * (weight - 1) where a mask or voxels give a value between 0 and 1; 0 removes the
+// objects. >= 0.
+struct ProbabilityRule {
+    double weight = 1;
+
+    friend bool operator==(const ProbabilityRule&, const ProbabilityRule&) = default;
+};
+
+using Rule = std::variant<DimensionRule, ConnectedRule, FixedRule, ForbiddenRule, ProbabilityRule>;
+
+// As requests name the rules, in the order of the alternatives of Rule.
+inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames = {
+    "dimension", "connected", "fixed", "forbidden", "probability"};
+
+// What requests call empty space, unless the example has an object of that name.
+inline constexpr const char* kEmptyName = "empty";
+
+// Whether it can be said where a rule holds.
+[[nodiscard]] inline bool has_region(const Rule& rule) {
+    return !std::holds_alternative<DimensionRule>(rule) &&
+           !std::holds_alternative<ConnectedRule>(rule);
+}
+
+// Whether a rule may speak of empty space.
+[[nodiscard]] inline bool may_name_empty(const Rule& rule) {
+    return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<ForbiddenRule>(rule);
+}
+
+struct Constraint {
+    Rule rule;
+    std::vector<std::string> objects = {};  // one for a dimension
+    Region region = {};
+
+    friend bool operator==(const Constraint&, const Constraint&) = default;
+};
+
+}  // namespace modelsynth::continuous

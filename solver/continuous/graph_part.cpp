@@ -1,0 +1,39 @@
+#include "solver/continuous/graph_part.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace modelsynth::continuous {
+
+GraphPart part_of(const Arrangement& arrangement, std::vector<Site> vertices) {
+    const auto inside = [&](Site site) {
+        const auto at = std::lower_bound(vertices.begin(), vertices.end(), site);
+        return at != vertices.end() && *at == site ? static_cast<Site>(at - vertices.begin())
+                                                   : kNoSite;
+    };
+    std::vector<GraphArc> arcs;
+    std::vector<GraphPart::OutwardArc> outward;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        for (const ArrangementEdge& edge : arrangement.edges(vertices[i])) {
+            if (edge.end == kNoSite) {
+                continue;
+            }
+            const Site far = inside(edge.end);
+            if (far == kNoSite) {
+                outward.push_back({static_cast<Site>(i), edge.end, edge.heading});
+            } else if (edge.heading % 2 == 0) {
+                arcs.push_back({static_cast<Site>(i), far, edge.heading, opposite(edge.heading)});
+            }
+        }
+    }
+    GraphTopology inner(vertices.size(), arcs);
+    return {std::move(inner), std::move(vertices), std::move(outward)};
+}
+
+GraphPart part_of(const Arrangement& arrangement, const Box& cells) {
+    std::vector<Site> vertices;
+    arrangement.for_each_vertex(cells, [&](Site site) { vertices.push_back(site); });
+    return part_of(arrangement, std::move(vertices));
+}
+
+}  // namespace modelsynth::continuous

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "solver/continuous/arrangement.h"
+#include "solver/continuous/reading.h"
+#include "solver/core/result.h"
+#include "solver/core/site_domains.h"
+#include "solver/core/site_weights.h"
+
+#include <span>
+#include <vector>
+
+namespace modelsynth::continuous {
+
+// With a ground, a model's box begins so many spacings below it: what stands on it has its lowest
+// planes inside.
+inline constexpr double kBelowGround = 0.25;
+
+// Empty space, or the bare ground.
+[[nodiscard]] std::vector<Label> plain_labels(
+    const ExampleReading& reading, const Arrangement& arrangement
+);
+
+// A model to begin with that keeps to the domains: the plain labels, and where they do not fit,
+// what fits and is as plain as can be found.
+// Fails: kContradiction with the place when it is proved that nothing fits, kGaveUp.
+[[nodiscard]] Result<std::vector<Label>> find_initial_labels(
+    const ExampleReading& reading,
+    const Arrangement& arrangement,
+    const SiteDomains& domains,
+    const SiteWeights& weights,
+    std::vector<Label> plain
+);
+
+}  // namespace modelsynth::continuous

@@ -1,0 +1,131 @@
+#include "solver/continuous/object_rules.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace modelsynth::continuous {
+
+namespace {
+
+// What is looked at of a cell is so many spacings away from its vertex.
+constexpr double kLook = 0.2;
+
+// One rule that says which objects may not be where.
+class RegionRule {
+  public:
+    RegionRule(const ExampleReading& reading, const Constraint& constraint, const Parameters& of)
+        : figures_(reading.figures()),
+          coverage_(constraint.region, *of.size),
+          banned_(objects_named(reading.example(), constraint.objects)) {
+        if (std::holds_alternative<FixedRule>(constraint.rule)) {
+            banned_.flip();
+        }
+    }
+
+    // The figures that are left to a vertex; null: all.
+    const LabelSet* allowed(const Point& place, double look) {
+        const Topes& topes = figures_.topes();
+        if (coverage_.is_uniform(place, look)) {
+            return coverage_.at(place) >= 1 ? &inside() : nullptr;
+        }
+        std::vector<bool> within(topes.count());
+        bool any = false;
+        for (std::size_t t = 0; t < topes.count(); ++t) {
+            const Point there = place + look * topes.inside(static_cast<Tope>(t));
+            within[t] = coverage_.at(there) >= 1;
+            any = any || within[t];
+        }
+        return any ? &of_cells(std::move(within)) : nullptr;
+    }
+
+  private:
+    const LabelSet& inside() {
+        if (!inside_) {
+            inside_ = filtered(std::vector<bool>(figures_.topes().count(), true));
+        }
+        return *inside_;
+    }
+
+    const LabelSet& of_cells(std::vector<bool> within) {
+        const auto known = of_cells_.find(within);
+        if (known != of_cells_.end()) {
+            return known->second;
+        }
+        LabelSet set = filtered(within);
+        return of_cells_.emplace(std::move(within), std::move(set)).first->second;
+    }
+
+    [[nodiscard]] LabelSet filtered(const std::vector<bool>& within) const {
+        LabelSet set(figures_.count());
+        for (std::size_t l = 0; l < figures_.count(); ++l) {
+            const Figure& figure = figures_.at(static_cast<Label>(l));
+            bool fits = true;
+            for (std::size_t t = 0; t < within.size(); ++t) {
+                fits = fits && !(within[t] && banned_[static_cast<ObjectId>(figure[t])]);
+            }
+            if (fits) {
+                set.insert(static_cast<Label>(l));
+            }
+        }
+        return set;
+    }
+
+    const Figures& figures_;
+    Coverage coverage_;
+    ObjectSet banned_;
+    std::optional<LabelSet> inside_;
+    std::map<std::vector<bool>, LabelSet> of_cells_;
+};
+
+bool bans_objects(const Constraint& constraint) {
+    const auto* probability = std::get_if<ProbabilityRule>(&constraint.rule);
+    return std::holds_alternative<FixedRule>(constraint.rule) ||
+           std::holds_alternative<ForbiddenRule>(constraint.rule) ||
+           (probability != nullptr && probability->weight == 0);
+}
+
+}  // namespace
+
+ObjectSet objects_named(const Example& example, const std::vector<std::string>& names) {
+    ObjectSet objects;
+    for (const std::string& name : names) {
+        objects.set(find_object(example, name));  // kEmpty of kEmptyName
+    }
+    return objects;
+}
+
+LabelSet figures_of(const Figures& figures, const ObjectSet& objects) {
+    LabelSet set(figures.count());
+    for (std::size_t l = 0; l < figures.count(); ++l) {
+        for (const char object : figures.at(static_cast<Label>(l))) {
+            if (objects[static_cast<ObjectId>(object)]) {
+                set.insert(static_cast<Label>(l));
+            }
+        }
+    }
+    return set;
+}
+
+void narrow_to_regions(
+    const ExampleReading& reading,
+    const Parameters& parameters,
+    const Arrangement& arrangement,
+    SiteDomains& domains
+) {
+    const double look = kLook * arrangement.frame().cell;
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (!bans_objects(constraint)) {
+            continue;
+        }
+        RegionRule rule(reading, constraint, parameters);
+        for (std::size_t i = 0; i < arrangement.vertex_count(); ++i) {
+            const auto site = static_cast<Site>(i);
+            if (const LabelSet* allowed = rule.allowed(arrangement.position(site), look)) {
+                domains.narrow(site, *allowed);
+            }
+        }
+    }
+}
+
+}  // namespace modelsynth::continuous
