@@ -39,6 +39,10 @@ tinygltf::Primitive write_primitive(
     written.attributes["NORMAL"] = buffer.normals(primitive.normals);
     written.attributes["COLOR_0"] =
         buffer.colors(primitive.colors, kit.materials[primitive.material].base_color);
+    if (!primitive.texture_coordinates.empty()) {
+        written.attributes["TEXCOORD_0"] =
+            buffer.texture_coordinates(primitive.texture_coordinates);
+    }
     written.indices = buffer.indices(primitive.indices, primitive.positions.size());
     return written;
 }
@@ -238,6 +242,11 @@ void append_placed(const Primitive& source, const Instance& instance, Primitive&
         merged.normals.push_back(turned(normal, instance.quarter_turns));
     }
     merged.colors.insert(merged.colors.end(), source.colors.begin(), source.colors.end());
+    merged.texture_coordinates.insert(
+        merged.texture_coordinates.end(),
+        source.texture_coordinates.begin(),
+        source.texture_coordinates.end()
+    );
     for (const std::uint32_t index : source.indices) {
         merged.indices.push_back(base + index);
     }
@@ -247,22 +256,24 @@ void append_placed(const Primitive& source, const Instance& instance, Primitive&
 bool write_merged(Document& document, std::size_t bytes_max) {
     const Kit& kit = *document.scene.kit;
     for (const SceneGroup& group : document.scene.groups) {
-        std::map<std::uint32_t, Primitive> by_material;
+        // A primitive has texture coordinates for all its vertices or for none.
+        std::map<std::pair<std::uint32_t, bool>, Primitive> parts;
         for (const Instance& instance : group.instances) {
             for (const Primitive& primitive : kit.meshes[instance.mesh].primitives) {
-                Primitive& merged = by_material[primitive.material];
+                const bool is_textured = !primitive.texture_coordinates.empty();
+                Primitive& merged = parts[{primitive.material, is_textured}];
                 merged.material = primitive.material;
                 append_placed(primitive, instance, merged);
             }
         }
-        if (by_material.empty()) {
+        if (parts.empty()) {
             continue;
         }
         tinygltf::Mesh mesh;
         mesh.name = group.name;
-        for (const auto& [material, primitive] : by_material) {
+        for (const auto& [key, primitive] : parts) {
             mesh.primitives.push_back(write_primitive(
-                primitive, kit, document.materials.number(material), document.buffer
+                primitive, kit, document.materials.number(primitive.material), document.buffer
             ));
         }
         document.model.meshes.push_back(std::move(mesh));

@@ -36,6 +36,13 @@ class GltfBuffer {
         return accessor;
     }
 
+    int texture_coordinates(const std::vector<Vec2>& values) {
+        const int accessor =
+            add(values.data(), values.size(), sizeof(Vec2), TINYGLTF_TARGET_ARRAY_BUFFER);
+        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
+        return accessor;
+    }
+
     // Vertex colours times the material's colour, RGB as RGBA in 16 bits each: some readers (VTK)
     // take vertex colours in place of the material's instead of multiplying them, and eight
     // linear bits are too few for dark colours.

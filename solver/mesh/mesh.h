@@ -16,6 +16,14 @@ struct Vec3 {
     friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
+// A point in a picture: x to the right, y downwards.
+struct Vec2 {
+    float x = 0;
+    float y = 0;
+
+    friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
 // A linear (not sRGB) colour, each part 0 ... 1.
 struct Color {
     float r = 1;
@@ -38,12 +46,14 @@ struct Material {
 };
 
 // Triangles of one material. positions, normals and colors have one entry per vertex; a colour is
-// linear RGB in 0 ... 255 that multiplies the material's. Front faces are counter-clockwise.
+// linear RGB in 0 ... 255 that multiplies the material's. texture_coordinates has one entry per
+// vertex or none at all. Front faces are counter-clockwise.
 struct Primitive {
     std::uint32_t material = 0;
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
     std::vector<std::array<std::uint8_t, 3>> colors;
+    std::vector<Vec2> texture_coordinates;
     std::vector<std::uint32_t> indices;
 };
 

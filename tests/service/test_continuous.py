@@ -64,6 +64,19 @@ def triangles_by_material(data):
     return triangles
 
 
+def textured_corners(data):
+    """(place, texture coordinates) of the corners of triangles, three by three."""
+    glb = GlbFile(data)
+    for mesh in glb.meshes():
+        for primitive in mesh["primitives"]:
+            points = glb.accessor(primitive["attributes"]["POSITION"])
+            coordinates = glb.accessor(primitive["attributes"]["TEXCOORD_0"])
+            assert len(coordinates) == len(points)
+            corners = [index for index, in glb.accessor(primitive["indices"])]
+            for i in range(0, len(corners), 3):
+                yield [(points[c], coordinates[c]) for c in corners[i:i + 3]]
+
+
 def assert_closed(triangles):
     edges = collections.Counter()
     for a, b, c in triangles:
@@ -92,6 +105,15 @@ def test_a_model_is_made_of_closed_solids(server):
         assert volume(of_one) > 0.5, name
     xs = [x for of_one in triangles.values() for t in of_one for (x, _, _) in t]
     assert min(xs) == 0 and math.isclose(max(xs), SIZE[0])
+
+
+@pytest.mark.parametrize("profile", ["nodes", "instanced", "merged"])
+def test_texture_coordinates_are_metres(server, profile):
+    triangles = list(textured_corners(model_of(server, make(server), f"?profile={profile}")))
+    assert len(triangles) > 20
+    for triangle in triangles:
+        for (place, at), (other, at_other) in zip(triangle, triangle[1:]):
+            assert math.isclose(math.dist(place, other), math.dist(at, at_other), abs_tol=1e-3)
 
 
 def test_everything_stands_on_the_grid_of_the_spacing(server):
