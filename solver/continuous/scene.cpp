@@ -21,6 +21,7 @@ struct FaceAxes {
     Point normal;
     Point right;
     Point up;
+    double repeat_m = 1;  // how wide the picture is
 };
 
 FaceAxes axes_of(const Point& normal) {
@@ -70,7 +71,10 @@ class MeshBuilder {
         const Bounds* part = nullptr
     ) {
         Primitive& primitive = primitive_of(material);
-        const FaceAxes axes = axes_of(normal);
+        FaceAxes axes = axes_of(normal);
+        if (const auto& texture = kit_->materials[material].texture) {
+            axes.repeat_m = texture->repeat_m;
+        }
         std::vector<Point> corners;
         std::vector<Point2> flat;
         std::vector<Loop> numbered;
@@ -130,7 +134,8 @@ class MeshBuilder {
         primitive.normals.push_back(rounded(axes.normal));
         primitive.colors.push_back({255, 255, 255});
         primitive.texture_coordinates.push_back(
-            {static_cast<float>(point.dot(axes.right)), static_cast<float>(-point.dot(axes.up))}
+            {static_cast<float>(point.dot(axes.right) / axes.repeat_m),
+             static_cast<float>(-point.dot(axes.up) / axes.repeat_m)}
         );
     }
 

@@ -27,8 +27,9 @@ struct GlbOptions {
 // The scene as binary glTF 2.0. Deterministic; equal scenes give equal bytes.
 // Texture coordinates are written as TEXCOORD_0 where there are any; kMerged keeps primitives that
 // have none apart from those that do.
-// Meshes that no instance uses are left out. With kNodes the instance nodes carry
-// `extras.piece`, their name.
+// Images are written as they are, each once, repeated in both directions.
+// Meshes that no instance uses are left out, and materials and images that no mesh uses. With
+// kNodes the instance nodes carry `extras.piece`, their name.
 // Fails: kTooLarge. Cost: O(instances), for kMerged O(triangles). Thread-safe.
 [[nodiscard]] Result<std::string> write_glb(const Scene& scene, const GlbOptions& options = {});
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "solver/mesh/texture.h"
+
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +36,8 @@ struct Color {
     friend bool operator==(const Color&, const Color&) = default;
 };
 
-// A glTF metallic-roughness material without images.
+// A glTF metallic-roughness material. Its texture multiplies the base colour; what has one needs
+// texture coordinates, counted in repeats of the picture.
 struct Material {
     std::string name;
     Color base_color;
@@ -41,6 +45,7 @@ struct Material {
     float roughness = 0.9F;
     Color emissive = {0, 0, 0};
     bool double_sided = false;
+    std::optional<Texture> texture = std::nullopt;
 
     friend bool operator==(const Material&, const Material&) = default;
 };
