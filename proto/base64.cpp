@@ -57,4 +57,19 @@ tl::expected<std::vector<std::byte>, std::size_t> decode_base64(std::string_view
     return bytes;
 }
 
+std::string encode_base64(std::string_view bytes) {
+    check(
+        bytes.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max()),
+        "bytes are too many for their encoder"
+    );
+    std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // the encoder adds a zero
+    EVP_EncodeBlock(
+        reinterpret_cast<unsigned char*>(text.data()),
+        reinterpret_cast<const unsigned char*>(bytes.data()),
+        static_cast<int>(bytes.size())
+    );
+    text.pop_back();
+    return text;
+}
+
 }  // namespace modelsynth::proto

@@ -3,6 +3,7 @@
 #include <tl/expected.hpp>
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,5 +15,9 @@ namespace modelsynth::proto {
 // Requires: text.size() fits an int (checked).
 [[nodiscard]] tl::expected<std::vector<std::byte>, std::size_t> decode_base64(std::string_view text
 );
+
+// The inverse.
+// Requires: bytes.size() fits an int (checked).
+[[nodiscard]] std::string encode_base64(std::string_view bytes);
 
 }  // namespace modelsynth::proto

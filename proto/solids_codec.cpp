@@ -2,6 +2,7 @@
 
 #include "proto/continuous_codec.h"
 #include "proto/example_codec.h"
+#include "proto/image_codec.h"
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/mesh_import.h"
@@ -55,6 +56,9 @@ class SolidsReader {
         if (const auto description = reader_.optional("description")) {
             example_.description = description->string(1024).value_or("");
         }
+        if (const auto images = reader_.optional("images")) {
+            images_ = read_images(*images, limits_);
+        }
         read_list("objects", continuous::kObjectTypesMax, [this](const Value& object) {
             read_object(object);
         });
@@ -98,6 +102,25 @@ class SolidsReader {
         }
     }
 
+    std::optional<Texture> read_texture(const Value& value) {
+        ObjectReader reader(value);
+        Texture texture;
+        if (const auto image = reader.required("image")) {
+            const auto last = static_cast<std::int64_t>(images_.size()) - 1;
+            if (images_.empty()) {
+                image->fault("the example has no images");
+            } else if (const auto number = image->integer(0, last)) {
+                texture.image = images_[static_cast<std::size_t>(*number)];
+            }
+        }
+        if (const auto metres = reader.optional("metres")) {
+            texture.repeat_m = metres->number(kRepeatMin, kRepeatMax).value_or(1);
+        }
+        reader.finish();
+        // Without an image there is a fault.
+        return texture.image == nullptr ? std::nullopt : std::optional(std::move(texture));
+    }
+
     void read_object(const Value& value) {
         ObjectReader reader(value);
         ObjectType object;
@@ -119,6 +142,9 @@ class SolidsReader {
         }
         if (const auto roughness = reader.optional("roughness")) {
             material.roughness = static_cast<float>(roughness->number(0, 1).value_or(1));
+        }
+        if (const auto texture = reader.optional("texture")) {
+            material.texture = read_texture(*texture);
         }
         if (const auto weight = reader.optional("weight")) {
             object.weight = weight->number(0, 1e6).value_or(1);
@@ -239,10 +265,12 @@ class SolidsReader {
     const RequestLimits& limits_;
     ObjectReader reader_;
     continuous::Example example_;
+    std::vector<SharedImage> images_;  // null: there is a fault
     bool is_size_given_ = false;
     bool is_spacing_given_ = false;
 };
 
+// Without their textures.
 OrderedJson write_objects(const continuous::Example& example) {
     const auto triple = [](const Color& color) {
         return OrderedJson::array({color.r, color.g, color.b});
@@ -281,6 +309,15 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
 }
 
 OrderedJson write_solids(const continuous::Example& example) {
+    OrderedJson objects = write_objects(example);
+    const ImageList images(example);
+    for (std::size_t i = 0; i < example.objects.size(); ++i) {
+        const auto& texture = example.materials[example.objects[i].material].texture;
+        if (texture) {
+            objects[i]["texture"] = {
+                {"image", images.number_of(*texture)}, {"metres", texture->repeat_m}};
+        }
+    }
     OrderedJson polyhedra = OrderedJson::array();
     for (const Polyhedron& solid : example.polyhedra) {
         OrderedJson vertices = OrderedJson::array();
@@ -313,13 +350,16 @@ OrderedJson write_solids(const continuous::Example& example) {
         {"name", example.name},
         {"title", example.title},
         {"description", example.description},
-        {"objects", write_objects(example)},
+        {"objects", std::move(objects)},
         {"polyhedra", std::move(polyhedra)},
         {"dimensions", std::move(dimensions)},
         {"connected", std::move(connected)},
         {"spacing", example.spacing},
         {"size", example.size},
         {"density", example.density}};
+    if (!images.empty()) {
+        written["images"] = images.write();
+    }
     if (example.ground) {
         written["ground"] = example.objects[*example.ground - 1U].name;
     }

@@ -15,16 +15,19 @@ namespace modelsynth::continuous {
 
 namespace {
 
-// Two directions in a face's plane: to the right and up, seen from outside.
+// How a face lies in space, and two directions in its plane: to the right and up, seen from
+// outside.
 struct FaceAxes {
+    Point normal;
     Point right;
     Point up;
+    double repeat_m = 1;  // how wide the picture is
 };
 
 FaceAxes axes_of(const Point& normal) {
     const bool is_flat = std::abs(normal.y()) > 1 - 1e-9;
     const Point right = is_flat ? Point(Point::UnitX()) : Point::UnitY().cross(normal).normalized();
-    return {right, normal.cross(right)};
+    return {normal, right, normal.cross(right)};
 }
 
 // A convex polygon cut to a box (Sutherland and Hodgman 1974).
@@ -68,7 +71,10 @@ class MeshBuilder {
         const Bounds* part = nullptr
     ) {
         Primitive& primitive = primitive_of(material);
-        const FaceAxes axes = axes_of(normal);
+        FaceAxes axes = axes_of(normal);
+        if (const auto& texture = kit_->materials[material].texture) {
+            axes.repeat_m = texture->repeat_m;
+        }
         std::vector<Point> corners;
         std::vector<Point2> flat;
         std::vector<Loop> numbered;
@@ -89,13 +95,13 @@ class MeshBuilder {
         const auto triangles = triangulate(flat, numbered.front(), holes);
         if (part != nullptr) {
             for (const auto& [a, b, c] : triangles) {
-                add_fan(primitive, clipped({corners[a], corners[b], corners[c]}, *part), normal);
+                add_fan(primitive, clipped({corners[a], corners[b], corners[c]}, *part), axes);
             }
             return;
         }
         const auto first = static_cast<std::uint32_t>(primitive.positions.size());
         for (const Point& corner : corners) {
-            add_vertex(primitive, corner, normal);
+            add_vertex(primitive, corner, axes);
         }
         for (const auto& triangle : triangles) {
             for (const std::uint32_t corner : triangle) {
@@ -119,22 +125,26 @@ class MeshBuilder {
   private:
     static constexpr std::size_t kNone = ~std::size_t{0};
 
-    static void add_vertex(Primitive& primitive, const Point& point, const Point& normal) {
+    static void add_vertex(Primitive& primitive, const Point& point, const FaceAxes& axes) {
         const auto rounded = [](const Point& p) {
             return Vec3{
                 static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
         };
         primitive.positions.push_back(rounded(point));
-        primitive.normals.push_back(rounded(normal));
+        primitive.normals.push_back(rounded(axes.normal));
         primitive.colors.push_back({255, 255, 255});
+        primitive.texture_coordinates.push_back(
+            {static_cast<float>(point.dot(axes.right) / axes.repeat_m),
+             static_cast<float>(-point.dot(axes.up) / axes.repeat_m)}
+        );
     }
 
     static void add_fan(
-        Primitive& primitive, const std::vector<Point>& polygon, const Point& normal
+        Primitive& primitive, const std::vector<Point>& polygon, const FaceAxes& axes
     ) {
         const auto first = static_cast<std::uint32_t>(primitive.positions.size());
         for (const Point& corner : polygon) {
-            add_vertex(primitive, corner, normal);
+            add_vertex(primitive, corner, axes);
         }
         for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
             for (const std::uint32_t corner : {0U, i, i + 1}) {

@@ -21,7 +21,7 @@ namespace {
 class KitReader {
   public:
     KitReader(const tinygltf::Model& model, const GlbReadLimits& limits)
-        : model_(model), meshes_(model, limits.vertices_max), visited_(model.nodes.size()) {}
+        : model_(model), meshes_(model, limits, Textures::kRefused), visited_(model.nodes.size()) {}
 
     Result<Kit> read() {
         if (auto fine = meshes_.read_materials(); !fine) {

@@ -15,6 +15,7 @@ struct GlbReadLimits {
     std::size_t nodes_max = 65536;
     std::size_t vertices_max = 4'000'000;
     std::size_t json_depth_max = 64;
+    std::size_t image_bytes_max = kImageBytesMax;  // of all textures together
 };
 
 // The named nodes of a binary glTF 2.0 file, each as one mesh named as the node, with all its

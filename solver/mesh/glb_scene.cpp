@@ -43,7 +43,7 @@ class SceneReader {
   public:
     SceneReader(const tinygltf::Model& model, const GlbReadLimits& limits)
         : model_(model),
-          meshes_(model, limits.vertices_max),
+          meshes_(model, limits, Textures::kTaken),
           visited_(model.nodes.size()),
           kit_meshes_(model.meshes.size()) {}
 

@@ -47,7 +47,11 @@ struct GlbScene {
 };
 
 // The default scene of a binary glTF 2.0 file, or else its first, or else all its nodes.
-// Taken and refused, and hostile input: as read_glb(). Fails: kInvalidArgument, kTooLarge.
+// Taken and refused, and hostile input: as read_glb(), but that a material may have a texture of
+// its base colour: a PNG or JPEG in a buffer view, as its first bytes and its mimeType say.
+// "metres" in the material's extras is how wide and how high the picture is, 1 if nothing is said.
+// Textures of other kinds are refused; sampler and texture coordinates are not read.
+// Fails: kInvalidArgument, kTooLarge.
 [[nodiscard]] Result<GlbScene> read_glb_scene(
     std::span<const std::byte> bytes, const GlbReadLimits& limits = {}
 );

@@ -39,6 +39,10 @@ tinygltf::Primitive write_primitive(
     written.attributes["NORMAL"] = buffer.normals(primitive.normals);
     written.attributes["COLOR_0"] =
         buffer.colors(primitive.colors, kit.materials[primitive.material].base_color);
+    if (!primitive.texture_coordinates.empty()) {
+        written.attributes["TEXCOORD_0"] =
+            buffer.texture_coordinates(primitive.texture_coordinates);
+    }
     written.indices = buffer.indices(primitive.indices, primitive.positions.size());
     return written;
 }
@@ -46,8 +50,8 @@ tinygltf::Primitive write_primitive(
 // Puts the materials that are used into the file and tells their numbers there.
 class MaterialWriter {
   public:
-    MaterialWriter(tinygltf::Model& model, const Kit& kit)
-        : model_(model), kit_(kit), written_(kit.materials.size(), -1) {}
+    MaterialWriter(tinygltf::Model& model, GltfBuffer& buffer, const Kit& kit)
+        : model_(model), buffer_(buffer), kit_(kit), written_(kit.materials.size(), -1) {}
 
     int number(std::uint32_t material) {
         if (written_[material] < 0) {
@@ -64,7 +68,7 @@ class MaterialWriter {
         return {round(color.r), round(color.g), round(color.b)};
     }
 
-    static tinygltf::Material write(const Material& material) {
+    tinygltf::Material write(const Material& material) {
         tinygltf::Material written;
         written.name = material.name;
         written.pbrMetallicRoughness.baseColorFactor = {1, 1, 1, 1};  // see colors()
@@ -72,18 +76,58 @@ class MaterialWriter {
         written.pbrMetallicRoughness.roughnessFactor = parts({material.roughness, 0, 0})[0];
         written.emissiveFactor = parts(material.emissive);
         written.doubleSided = material.double_sided;
+        if (material.texture) {
+            written.pbrMetallicRoughness.baseColorTexture.index =
+                texture_number(material.texture->image.get());
+            // So that a file that is sent back as an example says it again.
+            written.extras = tinygltf::Value(tinygltf::Value::Object{
+                {"metres", tinygltf::Value(material.texture->repeat_m)}});
+        }
         return written;
     }
 
+    // Of an image there is one texture, and all have one sampler.
+    int texture_number(const Image* image) {
+        const auto found = std::find(images_.begin(), images_.end(), image);
+        if (found != images_.end()) {
+            return static_cast<int>(found - images_.begin());
+        }
+        add_sampler();
+        tinygltf::Image written;
+        written.bufferView = buffer_.image(image->bytes);
+        written.mimeType = mime_type(image->format);
+        model_.images.push_back(std::move(written));
+        tinygltf::Texture texture;
+        texture.sampler = 0;
+        texture.source = static_cast<int>(images_.size());
+        model_.textures.push_back(std::move(texture));
+        images_.push_back(image);
+        return static_cast<int>(images_.size()) - 1;
+    }
+
+    void add_sampler() {
+        if (model_.samplers.empty()) {
+            tinygltf::Sampler sampler;
+            sampler.wrapS = TINYGLTF_TEXTURE_WRAP_REPEAT;
+            sampler.wrapT = TINYGLTF_TEXTURE_WRAP_REPEAT;
+            // What is repeated often flickers from afar without mipmaps.
+            sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+            sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+            model_.samplers.push_back(std::move(sampler));
+        }
+    }
+
     tinygltf::Model& model_;
+    GltfBuffer& buffer_;
     const Kit& kit_;
     std::vector<int> written_;
+    std::vector<const Image*> images_;  // as they are numbered in the file
 };
 
 // The file as it grows.
 struct Document {
     explicit Document(const Scene& source)
-        : scene(source), buffer(model), materials(model, *source.kit) {
+        : scene(source), buffer(model), materials(model, buffer, *source.kit) {
         model.asset.version = "2.0";
         model.asset.generator = "modelsynth";
     }
@@ -238,6 +282,11 @@ void append_placed(const Primitive& source, const Instance& instance, Primitive&
         merged.normals.push_back(turned(normal, instance.quarter_turns));
     }
     merged.colors.insert(merged.colors.end(), source.colors.begin(), source.colors.end());
+    merged.texture_coordinates.insert(
+        merged.texture_coordinates.end(),
+        source.texture_coordinates.begin(),
+        source.texture_coordinates.end()
+    );
     for (const std::uint32_t index : source.indices) {
         merged.indices.push_back(base + index);
     }
@@ -247,22 +296,24 @@ void append_placed(const Primitive& source, const Instance& instance, Primitive&
 bool write_merged(Document& document, std::size_t bytes_max) {
     const Kit& kit = *document.scene.kit;
     for (const SceneGroup& group : document.scene.groups) {
-        std::map<std::uint32_t, Primitive> by_material;
+        // A primitive has texture coordinates for all its vertices or for none.
+        std::map<std::pair<std::uint32_t, bool>, Primitive> parts;
         for (const Instance& instance : group.instances) {
             for (const Primitive& primitive : kit.meshes[instance.mesh].primitives) {
-                Primitive& merged = by_material[primitive.material];
+                const bool is_textured = !primitive.texture_coordinates.empty();
+                Primitive& merged = parts[{primitive.material, is_textured}];
                 merged.material = primitive.material;
                 append_placed(primitive, instance, merged);
             }
         }
-        if (by_material.empty()) {
+        if (parts.empty()) {
             continue;
         }
         tinygltf::Mesh mesh;
         mesh.name = group.name;
-        for (const auto& [material, primitive] : by_material) {
+        for (const auto& [key, primitive] : parts) {
             mesh.primitives.push_back(write_primitive(
-                primitive, kit, document.materials.number(material), document.buffer
+                primitive, kit, document.materials.number(primitive.material), document.buffer
             ));
         }
         document.model.meshes.push_back(std::move(mesh));

@@ -12,7 +12,7 @@ namespace modelsynth {
 enum class GlbProfile : std::uint8_t {
     kNodes,      // core glTF, a node per instance; every reader opens it
     kInstanced,  // EXT_mesh_gpu_instancing, required; a node per mesh, turn and group; small
-    kMerged,     // core glTF, one mesh per group with a primitive per material; large
+    kMerged,     // core glTF, one mesh per group with its materials' primitives joined; large
 };
 
 struct GlbOptions {
@@ -25,8 +25,11 @@ struct GlbOptions {
 };
 
 // The scene as binary glTF 2.0. Deterministic; equal scenes give equal bytes.
-// Meshes that no instance uses are left out. With kNodes the instance nodes carry
-// `extras.piece`, their name.
+// Texture coordinates are written as TEXCOORD_0 where there are any; kMerged keeps primitives that
+// have none apart from those that do.
+// Images are written as they are, each once, repeated in both directions.
+// Meshes that no instance uses are left out, and materials and images that no mesh uses. With
+// kNodes the instance nodes carry `extras.piece`, their name.
 // Fails: kTooLarge. Cost: O(instances), for kMerged O(triangles). Thread-safe.
 [[nodiscard]] Result<std::string> write_glb(const Scene& scene, const GlbOptions& options = {});
 

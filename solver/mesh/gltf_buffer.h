@@ -36,6 +36,13 @@ class GltfBuffer {
         return accessor;
     }
 
+    int texture_coordinates(const std::vector<Vec2>& values) {
+        const int accessor =
+            add(values.data(), values.size(), sizeof(Vec2), TINYGLTF_TARGET_ARRAY_BUFFER);
+        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
+        return accessor;
+    }
+
     // Vertex colours times the material's colour, RGB as RGBA in 16 bits each: some readers (VTK)
     // take vertex colours in place of the material's instead of multiplying them, and eight
     // linear bits are too few for dark colours.
@@ -77,6 +84,9 @@ class GltfBuffer {
         return accessor;
     }
 
+    // The number of the view, not of an accessor.
+    int image(const std::string& bytes) { return add_view(bytes.data(), bytes.size()); }
+
     // Instance attributes: one view for all, without a target, since a view and bounds for each
     // would weigh more than the numbers themselves. Call it last, and add nothing after it.
     int translations(const std::vector<Vec3>& values) {
@@ -104,19 +114,23 @@ class GltfBuffer {
     [[nodiscard]] std::size_t bytes() const { return data().size(); }
 
   private:
-    int add(const void* values, std::size_t count, std::size_t stride, int target) {
+    int add_view(const void* values, std::size_t length, int target = 0) {
         const std::size_t offset = data().size();
         const auto* bytes = static_cast<const unsigned char*>(values);
-        data().insert(data().end(), bytes, bytes + count * stride);
+        data().insert(data().end(), bytes, bytes + length);
         data().resize((data().size() + 3) / 4 * 4);
         tinygltf::BufferView view;
         view.buffer = 0;
         view.byteOffset = offset;
-        view.byteLength = count * stride;
+        view.byteLength = length;
         view.target = target;
         model_.bufferViews.push_back(std::move(view));
+        return static_cast<int>(model_.bufferViews.size()) - 1;
+    }
+
+    int add(const void* values, std::size_t count, std::size_t stride, int target) {
         tinygltf::Accessor accessor;
-        accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+        accessor.bufferView = add_view(values, count * stride, target);
         accessor.count = count;
         model_.accessors.push_back(std::move(accessor));
         return static_cast<int>(model_.accessors.size()) - 1;

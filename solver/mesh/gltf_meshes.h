@@ -3,6 +3,7 @@
 #include "solver/core/result.h"
 #include "solver/mesh/gltf_accessors.h"
 #include "solver/mesh/gltf_document.h"
+#include "solver/mesh/gltf_textures.h"
 #include "solver/mesh/gltf_transform.h"
 #include "solver/mesh/mesh.h"
 
@@ -11,27 +12,31 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace modelsynth {
 
+// Whether materials may have a texture of their base colour; others are never taken.
+enum class Textures : std::uint8_t { kRefused, kTaken };
+
 // Reads the materials and meshes of a parsed file, every index checked.
 class GltfMeshes {
   public:
-    GltfMeshes(const tinygltf::Model& model, std::size_t vertices_max)
-        : model_(model), accessors_(model, vertices_max) {}
+    GltfMeshes(const tinygltf::Model& model, const GlbReadLimits& limits, Textures textures)
+        : model_(model),
+          accessors_(model, limits.vertices_max),
+          textures_(model, limits.image_bytes_max),
+          takes_textures_(textures == Textures::kTaken) {}
 
     Result<void> read_materials() {
         for (const tinygltf::Material& source : model_.materials) {
             const auto& surface = source.pbrMetallicRoughness;
-            if (surface.baseColorTexture.index >= 0 ||
-                surface.metallicRoughnessTexture.index >= 0 || source.normalTexture.index >= 0 ||
-                source.emissiveTexture.index >= 0 || source.occlusionTexture.index >= 0) {
-                return tl::unexpected(invalid_glb(
-                    "material \"" + source.name + "\" has a texture; only plain colours are taken"
-                ));
+            auto texture = read_texture(source);
+            if (!texture) {
+                return tl::unexpected(std::move(texture.error()));
             }
             const auto color = [](const std::vector<double>& parts, float otherwise) {
                 const auto part = [&](std::size_t i) {
@@ -46,7 +51,8 @@ class GltfMeshes {
                  std::clamp(static_cast<float>(surface.metallicFactor), 0.0F, 1.0F),
                  std::clamp(static_cast<float>(surface.roughnessFactor), 0.0F, 1.0F),
                  color(source.emissiveFactor, 0),
-                 source.doubleSided}
+                 source.doubleSided,
+                 std::move(*texture)}
             );
         }
         return {};
@@ -72,6 +78,28 @@ class GltfMeshes {
     std::vector<Material> take_materials() { return std::move(materials_); }
 
   private:
+    Result<std::optional<Texture>> read_texture(const tinygltf::Material& source) {
+        const auto& surface = source.pbrMetallicRoughness;
+        const bool has_base_color = surface.baseColorTexture.index >= 0;
+        const std::string place = "material \"" + source.name + "\"";
+        if (has_base_color && !takes_textures_) {
+            return tl::unexpected(
+                invalid_glb(place + " has a texture; only plain colours are taken")
+            );
+        }
+        if (surface.metallicRoughnessTexture.index >= 0 || source.normalTexture.index >= 0 ||
+            source.emissiveTexture.index >= 0 || source.occlusionTexture.index >= 0) {
+            return tl::unexpected(invalid_glb(
+                place + (takes_textures_ ? " has a texture of another kind than base colours"
+                                         : " has a texture; only plain colours are taken")
+            ));
+        }
+        if (!has_base_color) {
+            return std::nullopt;
+        }
+        return textures_.read(source, place);
+    }
+
     std::uint32_t default_material() {
         if (default_material_ < 0) {
             default_material_ = static_cast<int>(materials_.size());
@@ -210,6 +238,8 @@ class GltfMeshes {
 
     const tinygltf::Model& model_;
     AccessorReader accessors_;
+    GltfTextures textures_;
+    bool takes_textures_;
     std::vector<Material> materials_;
     int default_material_ = -1;
 };

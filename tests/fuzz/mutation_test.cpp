@@ -14,6 +14,7 @@
 #include "solver/examples/built_in.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/mesh/glb_reader.h"
+#include "solver/mesh/glb_scene.h"
 #include "solver/mesh/glb_writer.h"
 #include "tests/support/png_file.h"
 
@@ -289,6 +290,38 @@ TEST(Fuzz, SolidsInBinaryGltf) {
         const auto parsed = proto::parse_example_glb(text, {});
         EXPECT_TRUE(parsed || !proto::to_json(parsed.error()).empty());
         return parsed.has_value();
+    });
+}
+
+// A small file that passes for a PNG.
+constexpr const char* kPngUri = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAABAAAAAQCAAA";
+
+std::string textured_wedge() {
+    std::string text = kWedge;
+    const std::string before = R"("name":"wall",)";
+    text.insert(text.find(before) + before.size(), R"("texture":{"image":0,"metres":0.5},)");
+    text.insert(1, R"("images":[")" + std::string(kPngUri) + R"("],)");
+    return text;
+}
+
+// Whatever is made of textures, a file with them is one that is taken.
+bool is_textured_example(const proto::Parsed<proto::ExampleUpload>& parsed) {
+    if (parsed) {
+        const auto glb = write_glb(example_scene(parsed->example));
+        EXPECT_TRUE(glb);
+        EXPECT_TRUE(glb && read_glb_scene(std::as_bytes(std::span(*glb))));
+    }
+    return parsed.has_value();
+}
+
+TEST(Fuzz, Textures) {
+    fuzz(textured_wedge(), 14, [](const std::string& text) {
+        return is_textured_example(proto::parse_example(text, {}));
+    });
+    const auto wedge = proto::parse_example(textured_wedge(), {});
+    ASSERT_TRUE(wedge) << proto::to_json(wedge.error());
+    fuzz(*write_glb(example_scene(wedge->example)), 15, [](const std::string& text) {
+        return is_textured_example(proto::parse_example_glb(text, {}));
     });
 }
 

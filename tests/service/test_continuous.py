@@ -1,10 +1,13 @@
 """Continuous model synthesis through the API: examples made of solids, jobs, events, files."""
 
+import base64
 import collections
 import json
 import math
 import pathlib
 import re
+import struct
+import zlib
 
 import pytest
 
@@ -64,6 +67,19 @@ def triangles_by_material(data):
     return triangles
 
 
+def textured_corners(data):
+    """(place, texture coordinates) of the corners of triangles, three by three."""
+    glb = GlbFile(data)
+    for mesh in glb.meshes():
+        for primitive in mesh["primitives"]:
+            points = glb.accessor(primitive["attributes"]["POSITION"])
+            coordinates = glb.accessor(primitive["attributes"]["TEXCOORD_0"])
+            assert len(coordinates) == len(points)
+            corners = [index for index, in glb.accessor(primitive["indices"])]
+            for i in range(0, len(corners), 3):
+                yield [(points[c], coordinates[c]) for c in corners[i:i + 3]]
+
+
 def assert_closed(triangles):
     edges = collections.Counter()
     for a, b, c in triangles:
@@ -92,6 +108,15 @@ def test_a_model_is_made_of_closed_solids(server):
         assert volume(of_one) > 0.5, name
     xs = [x for of_one in triangles.values() for t in of_one for (x, _, _) in t]
     assert min(xs) == 0 and math.isclose(max(xs), SIZE[0])
+
+
+@pytest.mark.parametrize("profile", ["nodes", "instanced", "merged"])
+def test_texture_coordinates_are_metres(server, profile):
+    triangles = list(textured_corners(model_of(server, make(server), f"?profile={profile}")))
+    assert len(triangles) > 20
+    for triangle in triangles:
+        for (place, at), (other, at_other) in zip(triangle, triangle[1:]):
+            assert math.isclose(math.dist(place, other), math.dist(at, at_other), abs_tol=1e-3)
 
 
 def test_everything_stands_on_the_grid_of_the_spacing(server):
@@ -273,6 +298,64 @@ def test_an_example_as_glb_is_the_same_example(server):
     assert len(read["polyhedra"]) == 2
     job = make(server, example=read["id"])
     assert job["result"]["stats"]["polygons"] > 0
+
+
+def png(side):
+    """A chequered picture."""
+    def chunk(kind, data):
+        checksum = zlib.crc32(kind + data)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", checksum)
+    rows = b"".join(b"\0" + bytes(255 * ((x // 4 + y // 4) % 2) for x in range(side))
+                    for y in range(side))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", side, side, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def textures_of(data):
+    """The bytes of the picture of each material that has one."""
+    glb = GlbFile(data)
+    found = {}
+    for material in glb.json["materials"]:
+        texture = material["pbrMetallicRoughness"].get("baseColorTexture")
+        if texture is not None:
+            image = glb.json["images"][glb.json["textures"][texture["index"]]["source"]]
+            assert image["mimeType"] == "image/png"
+            view = glb.json["bufferViews"][image["bufferView"]]
+            start = view.get("byteOffset", 0)
+            found[material["name"]] = glb.binary[start:start + view["byteLength"]]
+    return found
+
+
+def textured_hut():
+    """With a picture on its walls that is half a metre wide."""
+    example = broken(lambda e: e["objects"][1].update(texture={"image": 0, "metres": 0.5}))
+    example["images"] = ["data:image/png;base64," + base64.b64encode(png(16)).decode()]
+    return example
+
+
+@pytest.mark.parametrize("form", ["json", "glb"])
+def test_the_textures_of_an_example_are_those_of_its_models(make_server, form):
+    server = make_server()
+    answer = server.request("POST", "/v1/examples", textured_hut())
+    assert answer.status == 201, answer.body
+    if form == "glb":
+        picture = server.get(f"/v1/examples/{answer.json()['id']}/model.glb").body
+        assert textures_of(picture) == {"wall": png(16)}
+        answer = server.request("POST", "/v1/examples", picture,
+                                headers={"Content-Type": "model/gltf-binary"})
+        assert answer.status == 201, answer.body
+    server.kill()
+    server.start()
+    model = model_of(server, make(server, example=answer.json()["id"]))
+    assert textures_of(model) == {"wall": png(16)}
+    # What is on walls is twice as dense as a metre, whatever else there is.
+    glb = GlbFile(model)
+    for primitive in glb.meshes()[0]["primitives"]:
+        place = glb.accessor(primitive["attributes"]["POSITION"])
+        at = glb.accessor(primitive["attributes"]["TEXCOORD_0"])
+        wall = glb.json["materials"][primitive["material"]]["name"] == "wall"
+        assert math.isclose(math.dist(at[0], at[1]),
+                            math.dist(place[0], place[1]) * (2 if wall else 1), abs_tol=1e-4)
 
 
 def test_a_glb_that_is_none_is_refused(server):

@@ -12,6 +12,7 @@ import pytest
 
 from conftest import Server
 from glb_file import INSTANCING, GlbFile
+from test_continuous import make, textured_hut
 from websocket_client import GLB, GLB_WHOLE, StateFrame, WebSocketClient
 from workload import YARD, submit
 
@@ -176,6 +177,17 @@ def test_the_khronos_validator_finds_no_error_and_no_warning(tools, files):
     bad = {name: report["messages"] for name, report in reports.items()
            if report["errors"] or report["warnings"]}
     assert bad == {}
+
+
+def test_the_khronos_validator_finds_nothing_wrong_with_textures(tools, server, tmp_path):
+    job = make(server, example=textured_hut())
+    files = {}
+    for profile in PROFILES:
+        files[profile] = tmp_path / f"{profile}.glb"
+        files[profile].write_bytes(_glb(server, f"/v1/jobs/{job['id']}/model.glb?profile={profile}"))
+        assert GlbFile(files[profile].read_bytes()).json["images"]
+    for report in run_tool(tools, "validate.mjs", files).values():
+        assert (report["errors"], report["warnings"]) == (0, 0), report["messages"]
 
 
 def test_the_validator_of_these_tests_finds_a_fault_that_is_there(tools, files, tmp_path):

@@ -14,7 +14,7 @@ constexpr std::size_t kNameBytesMax = 64;
 // Programs number the names of copies.
 bool look_alike(const Material& a, const Material& b) {
     return a.base_color == b.base_color && a.metallic == b.metallic && a.roughness == b.roughness &&
-           a.emissive == b.emissive && a.double_sided == b.double_sided;
+           a.emissive == b.emissive && a.double_sided == b.double_sided && a.texture == b.texture;
 }
 
 Error refusal(ErrorCode code, std::string_view name, const std::string& why) {

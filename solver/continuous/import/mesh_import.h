@@ -18,6 +18,8 @@ inline constexpr std::size_t kTrianglesMax = 100'000;
 // of
 //           the material of each of its primitives is ("object" when that has none), and what is of
 //           different materials must be closed by itself.
+// Textures: of base colours, see glb_scene.h. How the file lays them is not read: models have them
+//           upright on every face, in their size.
 // Ground:   a flat, horizontal node at y = 0 with "ground": true in its extras, or of an object
 // called
 //           "ground", is no solid but says that its object fills all below.

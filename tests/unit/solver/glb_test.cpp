@@ -2,6 +2,8 @@
 #include "solver/examples/built_in.h"
 #include "solver/mesh/glb_reader.h"
 #include "solver/mesh/glb_writer.h"
+#include "solver/mesh/gltf_accessors.h"
+#include "solver/mesh/gltf_document.h"
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,64 @@ TEST(GlbWriter, RefusesFilesOverTheLimitAtItsEdge) {
 }
 
 TEST(GlbWriter, AnEmptySceneIsAFileToo) { EXPECT_TRUE(write_glb(Scene{})); }
+
+Primitive triangle(bool has_coordinates) {
+    Primitive primitive;
+    primitive.positions = {{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};
+    primitive.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    primitive.colors = {{255, 255, 255}, {255, 255, 255}, {255, 255, 255}};
+    primitive.indices = {0, 1, 2};
+    if (has_coordinates) {
+        primitive.texture_coordinates = {{0, 0}, {4, 0}, {0, -2}};
+    }
+    return primitive;
+}
+
+TEST(GlbWriter, PrimitivesHaveTextureCoordinatesForEveryVertexOrNone) {
+    auto kit = std::make_shared<Kit>();
+    kit->materials = {{"stone", {}}};
+    kit->meshes = {{"plain", {triangle(false)}}, {"both", {triangle(true), triangle(false)}}};
+    Scene scene;
+    scene.kit = kit;
+    scene.names = {"plain", "both"};
+    scene.groups = {{"column", {{0, 0, {0, 0, 0}, 0}, {1, 1, {2, 0, 0}, 1}, {1, 1, {4, 0, 0}, 0}}}};
+    for (const auto profile : {GlbProfile::kNodes, GlbProfile::kInstanced, GlbProfile::kMerged}) {
+        GlbOptions options;
+        options.profile = profile;
+        const std::string glb = *write_glb(scene, options);
+        const auto model = parse_glb(bytes_of(glb), {});
+        // What is instanced requires its extension, which no reader of ours takes.
+        if (profile == GlbProfile::kInstanced) {
+            EXPECT_NE(glb.find("\"TEXCOORD_0\""), std::string::npos);
+            continue;
+        }
+        ASSERT_TRUE(model) << model.error().message;
+        std::size_t textured = 0;
+        std::size_t plain = 0;
+        for (const tinygltf::Mesh& mesh : model->meshes) {
+            for (const tinygltf::Primitive& primitive : mesh.primitives) {
+                const auto vertices =
+                    model->accessors[static_cast<std::size_t>(primitive.attributes.at("POSITION"))]
+                        .count;
+                const auto found = primitive.attributes.find("TEXCOORD_0");
+                if (found == primitive.attributes.end()) {
+                    plain += vertices;
+                    continue;
+                }
+                textured += vertices;
+                AccessorReader accessors(*model, 100);
+                const auto rows = accessors.rows(found->second, "TEXCOORD_0");
+                ASSERT_TRUE(rows) << rows.error().message;
+                ASSERT_EQ(rows->size(), vertices);
+                EXPECT_EQ((*rows)[1][0], 4);
+                EXPECT_EQ((*rows)[2][1], -2);
+            }
+        }
+        const bool is_merged = profile == GlbProfile::kMerged;
+        EXPECT_EQ(textured, is_merged ? 6U : 3U);
+        EXPECT_EQ(plain, is_merged ? 9U : 6U);
+    }
+}
 
 TEST(GlbReader, ReadsBackTheKitThatWasWritten) {
     const auto& castle = *examples::built_in().front();
