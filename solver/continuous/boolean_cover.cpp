@@ -102,7 +102,10 @@ void remove_idle(const std::vector<std::uint32_t>& on, Cover& cover) {
 class CoverSearch {
   public:
     explicit CoverSearch(const PartialFunction& function)
-        : on_(function.on), primes_(prime_implicants(function)), of_point_(on_.size()) {
+        : on_(function.on),
+          primes_(prime_implicants(function)),
+          of_point_(on_.size()),
+          steps_(primes_.size() * on_.size()) {
         check(on_.size() <= kPointsMax, "more points than there are");
         for (const Cube& prime : primes_) {
             Points points;
@@ -150,7 +153,7 @@ class CoverSearch {
         for (const std::size_t prime : of_point_[rarest]) {
             choices.emplace_back((open & ~points_[prime]).count(), prime);
         }
-        steps_ += on_.size() + choices.size();
+        steps_ += on_.size() + choices.size() * kPointsMax / 16;
         std::sort(choices.begin(), choices.end(), [this](const auto& a, const auto& b) {
             return std::tuple(a.first, literal_count(primes_[a.second]), a.second) <
                    std::tuple(b.first, literal_count(primes_[b.second]), b.second);
@@ -198,7 +201,7 @@ class CoverSearch {
     std::vector<std::vector<std::size_t>> of_point_;  // those that hold there
     std::vector<Cover> found_;                        // cheapest first
     std::size_t nodes_ = 0;
-    std::size_t steps_ = 0;
+    std::size_t steps_;
 };
 
 // A prime implicant that holds at a point: the variables that most points off differ in, until

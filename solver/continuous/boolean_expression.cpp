@@ -14,8 +14,9 @@ namespace {
 
 using Kind = Expression::Kind;
 
-// Beyond so many cubes one literal is tried, not all; beyond so many more none.
-constexpr std::size_t kCubesTriedMax = 8;
+// Besides the most frequent literals so many others are tried for one cover; of very many cubes
+// none.
+constexpr std::size_t kTrialsMax = 24;
 constexpr std::size_t kCubesFactoredMax = 64;
 
 Expression variable(std::size_t number, bool is_negated) {
@@ -164,40 +165,66 @@ Division divided(const Cover& cover, const Cube& literal) {
     return division;
 }
 
-Expression product_and_rest(const Division& division) {
-    std::vector<Expression> factors;
-    factors.push_back(factored(division.quotient));
-    factors.push_back(factored(division.divisor));
-    std::vector<Expression> terms;
-    terms.push_back(joined(Kind::kAnd, std::move(factors)));
-    if (!division.rest.empty()) {
-        terms.push_back(factored(division.rest));
+class Factoring {
+  public:
+    [[nodiscard]] Expression factored(const Cover& cover) {
+        if (cover.empty()) {
+            return {Kind::kOr, false, 0, {}};
+        }
+        const Cube common = common_to(cover);
+        if (cover.size() == 1) {
+            return conjunction(common);
+        }
+        Cover rest;
+        for (const Cube& cube : cover) {
+            rest.push_back(without(cube, common));
+        }
+        std::vector<Expression> factors;
+        factors.push_back(conjunction(common));
+        factors.push_back(factored_sum(rest));
+        return joined(Kind::kAnd, std::move(factors));
     }
-    return joined(Kind::kOr, std::move(terms));
-}
 
-// Cubes with no literal that all have.
-Expression factored_sum(const Cover& cover) {
-    std::optional<Expression> best;
-    for (const Cube& literal :
-         cover.size() > kCubesFactoredMax ? std::vector<Cube>() : shared_literals(cover)) {
-        Expression next = product_and_rest(divided(cover, literal));
-        if (!best || literal_count(next) < literal_count(*best)) {
-            best = std::move(next);
+  private:
+    // Of cubes with no literal that all have.
+    Expression factored_sum(const Cover& cover) {
+        std::optional<Expression> best;
+        const auto literals =
+            cover.size() > kCubesFactoredMax ? std::vector<Cube>() : shared_literals(cover);
+        for (const Cube& literal : literals) {
+            if (best && trials_left_ == 0) {
+                break;
+            }
+            trials_left_ -= best ? 1U : 0U;
+            Expression next = product_and_rest(divided(cover, literal));
+            if (!best || literal_count(next) < literal_count(*best)) {
+                best = std::move(next);
+            }
         }
-        if (cover.size() > kCubesTriedMax) {
-            break;
+        if (best) {
+            return std::move(*best);
         }
+        std::vector<Expression> terms;
+        for (const Cube& cube : cover) {
+            terms.push_back(conjunction(cube));
+        }
+        return joined(Kind::kOr, std::move(terms));
     }
-    if (best) {
-        return std::move(*best);
+
+    Expression product_and_rest(const Division& division) {
+        std::vector<Expression> factors;
+        factors.push_back(factored(division.quotient));
+        factors.push_back(factored(division.divisor));
+        std::vector<Expression> terms;
+        terms.push_back(joined(Kind::kAnd, std::move(factors)));
+        if (!division.rest.empty()) {
+            terms.push_back(factored(division.rest));
+        }
+        return joined(Kind::kOr, std::move(terms));
     }
-    std::vector<Expression> terms;
-    for (const Cube& cube : cover) {
-        terms.push_back(conjunction(cube));
-    }
-    return joined(Kind::kOr, std::move(terms));
-}
+
+    std::size_t trials_left_ = kTrialsMax;
+};
 
 // What is shorter to read: variables first, then how many parentheses.
 std::pair<std::size_t, std::size_t> length_of(const Expression& expression) {
@@ -215,23 +242,7 @@ std::pair<std::size_t, std::size_t> length_of(const Expression& expression) {
 
 std::size_t literal_count(const Expression& expression) { return length_of(expression).first; }
 
-Expression factored(const Cover& cover) {
-    if (cover.empty()) {
-        return {Kind::kOr, false, 0, {}};
-    }
-    const Cube common = common_to(cover);
-    if (cover.size() == 1) {
-        return conjunction(common);
-    }
-    Cover rest;
-    for (const Cube& cube : cover) {
-        rest.push_back(without(cube, common));
-    }
-    std::vector<Expression> factors;
-    factors.push_back(conjunction(common));
-    factors.push_back(factored_sum(rest));
-    return joined(Kind::kAnd, std::move(factors));
-}
+Expression factored(const Cover& cover) { return Factoring().factored(cover); }
 
 Expression negated(Expression expression) {
     switch (expression.kind) {
@@ -257,8 +268,9 @@ std::optional<Expression> find_short_expression(
 ) {
     std::optional<Expression> best;
     const auto offer = [&](Expression next, std::size_t cubes) {
+        constexpr std::size_t kWeight = 16;  // formulas are made and thrown away
         const std::size_t tried = std::min(cubes, kCubesFactoredMax);
-        steps_left -= std::min(steps_left, tried * tried * tried);
+        steps_left -= std::min(steps_left, kWeight * tried * tried * (kTrialsMax + tried));
         if (!best || length_of(next) < length_of(*best)) {
             best = std::move(next);
         }

@@ -27,8 +27,8 @@ struct Expression {
 [[nodiscard]] std::size_t literal_count(const Expression& expression);
 
 // A disjunction with common parts taken out: a ∧ (b ∨ c) in place of (a ∧ b) ∨ (a ∧ c). Good, not
-// always shortest: algebraic division (Brayton 1982) by every literal in turn where there are few
-// cubes, else by the most frequent one; sums of very many cubes stay as they are.
+// always shortest: algebraic division (Brayton 1982) by the most frequent literal and, as often as
+// that is little work, by every other one; sums of very many cubes stay as they are.
 // Cost: O(c^3) of c cubes.
 [[nodiscard]] Expression factored(const Cover& cover);
 

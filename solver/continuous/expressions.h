@@ -29,7 +29,7 @@ namespace modelsynth::continuous {
 //       some hundredths of them. After that, and where an expression is longer than
 //       kExpressionLengthMax literals, nothing is written rather than something wrong.
 // Not thread-safe.
-inline constexpr std::size_t kExpressionStepsMax = std::size_t{1} << 28;
+inline constexpr std::size_t kExpressionStepsMax = std::size_t{1} << 27;
 inline constexpr std::size_t kExpressionLengthMax = 128;
 
 class ExpressionWriter {
