@@ -286,8 +286,12 @@ class Drawing {
         }
         std::vector<std::pair<std::string, std::string>> lines;  // each once, whichever way round
         for (const auto& [from, to] : strokes) {
-            auto ends = std::minmax(coordinates(from, length), coordinates(to, length));
-            lines.emplace_back(ends.first, ends.second);
+            std::string a = coordinates(from, length);
+            std::string b = coordinates(to, length);
+            if (b < a) {
+                std::swap(a, b);
+            }
+            lines.emplace_back(std::move(a), std::move(b));
         }
         std::sort(lines.begin(), lines.end());
         lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
@@ -404,7 +408,7 @@ std::vector<std::size_t> on_sheet(const Drawing& drawing, const Figures& figures
         ranked.emplace_back(-drawing.rank(number), number);
     }
     std::sort(ranked.begin(), ranked.end());
-    constexpr std::size_t kPlanesMax = 12;  // as if each had so many
+    constexpr std::size_t kPlanesMax = 8;  // as if each had so many
     constexpr std::size_t kWorkMax = kFiguresOnSheetMax * kPlanesMax * kPlanesMax * kPlanesMax;
     std::vector<std::size_t> numbers;
     std::size_t work = 0;

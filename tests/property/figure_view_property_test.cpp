@@ -1,10 +1,12 @@
 // Pictures of figures beside rays of sight: what is painted last at a place is what stands first
 // there.
 
+#include "solver/continuous/figure_drawing.h"
 #include "solver/continuous/figure_view.h"
 #include "solver/continuous/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/random_solids.h"
+#include "tests/support/well_formed.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -196,6 +198,21 @@ TEST(FigureViewProperty, OfRandomSolidsHasInFrontWhatIsInFront) {
         }
     }
     EXPECT_GT(read, 20U);
+}
+
+// What is thinner than can be seen is drawn in some way.
+TEST(FigureViewProperty, OfSliversIsAPicture) {
+    std::size_t read = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const auto reading =
+            ExampleReading::make(testing::make_random_solids(testing::SolidsKind::kSlivers, seed));
+        if (reading) {
+            EXPECT_TRUE(testing::is_well_formed(draw_figure_sheet(**reading)));
+            ++read;
+        }
+    }
+    EXPECT_GT(read, 5U);
 }
 
 // Any objects in the cells of up to ten planes.
