@@ -23,10 +23,9 @@ namespace modelsynth::continuous {
 // exact: it holds in the topes where the object is, and in no other.
 //
 // Cost: of r families that matter and t <= r (r - 1) + 2 cells of these, 2^r (r + 1) t up to nine
-// of
-//       them, and O(c r t) of c terms beyond; equal patterns are worked out once. A writer takes
-//       kExpressionStepsMax such steps in all, some tenths of a second; a built-in example takes
-//       some hundredths of them. After that, and where an expression is longer than
+//       families, and O(c r t) of c terms beyond; equal patterns are worked out once. A writer
+//       takes kExpressionStepsMax such steps in all, some tenths of a second; a built-in example
+//       takes milliseconds. After that, and where an expression is longer than
 //       kExpressionLengthMax literals, nothing is written rather than something wrong.
 // Not thread-safe.
 inline constexpr std::size_t kExpressionStepsMax = std::size_t{1} << 27;
