@@ -1,6 +1,8 @@
 #include "proto/analysis_codec.h"
 
 #include "proto/json.h"
+#include "solver/continuous/figure_drawing.h"
+#include "solver/continuous/reading.h"
 #include "solver/discrete/analysis/success_drawing.h"
 
 #include <algorithm>
@@ -169,6 +171,26 @@ const discrete::Example& discrete_of(const Example& example) {
     return *std::get<std::shared_ptr<const discrete::Example>>(example);
 }
 
+OrderedJson write_figures(const std::vector<continuous::Analysis::Figure>& figures) {
+    OrderedJson list = OrderedJson::array();
+    for (const continuous::Analysis::Figure& figure : figures) {
+        OrderedJson objects = OrderedJson::array();
+        OrderedJson expressions = OrderedJson::object();
+        for (const auto& [object, expression] : figure.parts) {
+            objects.push_back(object);
+            expressions[object] = expression ? OrderedJson(*expression) : OrderedJson(nullptr);
+        }
+        list.push_back(
+            {{"number", list.size()},
+             {"rank", figure.rank},
+             {"objects", std::move(objects)},
+             {"expressions", std::move(expressions)},
+             {"families", figure.families}}
+        );
+    }
+    return list;
+}
+
 OrderedJson write(const continuous::Analysis& analysis, const std::string& self) {
     OrderedJson families = OrderedJson::array();
     for (const continuous::Analysis::Family& family : analysis.families) {
@@ -188,8 +210,11 @@ OrderedJson write(const continuous::Analysis& analysis, const std::string& self)
         {"labels", analysis.figures},
         {"corner_labels", analysis.corner_figures},
         {"families", std::move(families)},
+        {"figures_listed", analysis.figure_list.size()},
+        {"figure_list", write_figures(analysis.figure_list)},
         {"warnings", std::move(warnings)},
-        {"urls", {{"self", self + "/analysis"}, {"example", self}}}};
+        {"urls",
+         {{"self", self + "/analysis"}, {"example", self}, {"figures", self + "/figures.svg"}}}};
 }
 
 }  // namespace
@@ -221,6 +246,17 @@ std::optional<std::string> success_drawing(const Example& example, const Analysi
     const std::array<discrete::SuccessCurve, 1> curves = {
         {{discrete_of(example).name, std::get<discrete::Analysis>(analysis).success}}};
     return discrete::draw_success_curves(curves);
+}
+
+std::optional<std::size_t> figure_count(const Example& example) {
+    const auto* solids = std::get_if<std::shared_ptr<const continuous::ExampleReading>>(&example);
+    return solids == nullptr ? std::nullopt : std::optional((*solids)->figures().count());
+}
+
+std::string figure_drawing(const Example& example, std::optional<std::size_t> number) {
+    const auto& solids = *std::get<std::shared_ptr<const continuous::ExampleReading>>(example);
+    return number ? continuous::draw_figure(solids, *number)
+                  : continuous::draw_figure_sheet(solids);
 }
 
 }  // namespace modelsynth::proto

@@ -339,9 +339,9 @@ OrderedJson write_solids(const continuous::Example& example) {
         );
     }
     OrderedJson connected = OrderedJson::array();
-    for (const std::vector<ObjectId>& objects : example.connected) {
+    for (const std::vector<ObjectId>& together : example.connected) {
         OrderedJson& names = connected.emplace_back(OrderedJson::array());
-        for (const ObjectId object : objects) {
+        for (const ObjectId object : together) {
             names.push_back(example.objects[object - 1U].name);
         }
     }

@@ -26,7 +26,7 @@ struct Route {
     BodyKind body = BodyKind::kOther;
 };
 
-constexpr std::array<Route, 23> kRoutes = {
+constexpr std::array<Route, 24> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -45,6 +45,7 @@ constexpr std::array<Route, 23> kRoutes = {
      {"GET", "/v1/examples/{}/pieces.glb", get_example_pieces},
      {"GET", "/v1/examples/{}/analysis", get_example_analysis},
      {"GET", "/v1/examples/{}/success.svg", get_example_success},
+     {"GET", "/v1/examples/{}/figures.svg", get_example_figures},
      {"GET", "/v1/solvers", list_solvers},
      {"GET", "/v1/solvers/{}", get_solver},
      {"GET", "/healthz", healthz},

@@ -119,4 +119,33 @@ Response get_example_success(const Call& call) {
     });
 }
 
+Response get_example_figures(const Call& call) {
+    if (auto problem = check_query(call.request, {"figure"})) {
+        return refuse(call, *problem);
+    }
+    const auto entry = call.service.examples().find(call.id);
+    if (!entry) {
+        return no_example(call);
+    }
+    const auto count = proto::figure_count(entry->example);
+    if (!count) {
+        return refuse(call, make_problem("not-found", "an example on a grid has no figures"));
+    }
+    const auto number = query_number(call.request, "figure", 0, 0, *count - 1);
+    if (!number) {
+        return refuse(call, number.error());
+    }
+    Response response = {200, {{"Content-Type", "image/svg+xml"}}, std::string()};
+    if (call.request.query_field("figure")) {
+        response.body = proto::figure_drawing(entry->example, *number);
+        return response;
+    }
+    const auto sheet = call.service.analyses().find_or_draw_figures(entry->id, entry->example);
+    if (!sheet) {
+        return refuse(call, sheet.error());
+    }
+    response.body = **sheet;
+    return response;
+}
+
 }  // namespace modelsynth::server

@@ -42,6 +42,7 @@ struct Call {
 [[nodiscard]] Response get_example_pieces(const Call& call);
 [[nodiscard]] Response get_example_analysis(const Call& call);
 [[nodiscard]] Response get_example_success(const Call& call);
+[[nodiscard]] Response get_example_figures(const Call& call);
 
 // service_handlers.cpp
 [[nodiscard]] Response list_solvers(const Call& call);

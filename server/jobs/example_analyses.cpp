@@ -1,10 +1,14 @@
 #include "server/jobs/example_analyses.h"
 
-#include <algorithm>
+#include "proto/analysis_codec.h"
+
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -35,60 +39,20 @@ class Alarm {
     std::jthread thread_;
 };
 
-// Counts a caller while it is there.
-class Caller {
-  public:
-    explicit Caller(std::atomic<int>& count) : count_(count), number_(++count) {}
-
-    Caller(const Caller&) = delete;
-    Caller& operator=(const Caller&) = delete;
-
-    ~Caller() { --count_; }
-
-    [[nodiscard]] int number() const { return number_; }
-
-  private:
-    std::atomic<int>& count_;
-    int number_;
-};
-
 }  // namespace
 
 proto::Parsed<std::shared_ptr<const Analysis>> ExampleAnalyses::find_or_make(
     const std::string& id, const Example& example
 ) {
-    if (auto known = find(id)) {
-        return known;
-    }
-    const Caller caller(callers_);
-    if (caller.number() > kCallersMax) {
-        return tl::unexpected(make_problem("busy", "other examples are being analysed"));
-    }
-    const std::lock_guard working(working_);
-    if (auto known = find(id)) {
-        return known;
-    }
-    auto made = make(example);
-    if (made) {
-        const std::lock_guard lock(mutex_);
-        kept_.emplace_front(id, *made);
-        if (kept_.size() > kKeptMax) {
-            kept_.pop_back();
-        }
-    }
-    return made;
+    return analyses_.find_or_make(id, [&] { return make(example); });
 }
 
-std::shared_ptr<const Analysis> ExampleAnalyses::find(const std::string& id) {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(kept_.begin(), kept_.end(), [&id](const Entry& entry) {
-        return entry.first == id;
+proto::Parsed<std::shared_ptr<const std::string>> ExampleAnalyses::find_or_draw_figures(
+    const std::string& id, const Example& example
+) {
+    return sheets_.find_or_make(id, [&]() -> proto::Parsed<std::shared_ptr<const std::string>> {
+        return std::make_shared<const std::string>(proto::figure_drawing(example, std::nullopt));
     });
-    if (found == kept_.end()) {
-        return nullptr;
-    }
-    kept_.splice(kept_.begin(), kept_, found);
-    return kept_.front().second;
 }
 
 proto::Parsed<std::shared_ptr<const Analysis>> ExampleAnalyses::make(const Example& example) {

@@ -1,22 +1,18 @@
 #pragma once
 
 #include "proto/problem.h"
+#include "server/jobs/kept_results.h"
 #include "solver/registry/task.h"
 
-#include <atomic>
 #include <cstddef>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
-#include <utility>
 
 namespace modelsynth::server {
 
-// What was found out about examples; the last ones are kept. One is analysed at a time, and few
-// callers wait for that, so that a seconds' work asked for many times takes no more than one
-// processor and leaves threads for others. Thread-safe; calls block.
+// What was found out about examples, and the sheets of their figures; the last ones are kept. See
+// kept_results.h for how many are made at a time. Thread-safe; calls block.
 class ExampleAnalyses {
   public:
     // Of the example of that id, whose content never changes.
@@ -25,23 +21,23 @@ class ExampleAnalyses {
         const std::string& id, const Example& example
     );
 
+    // The drawing of all figures. Requires: an example of solids (checked). Fails: busy.
+    [[nodiscard]] proto::Parsed<std::shared_ptr<const std::string>> find_or_draw_figures(
+        const std::string& id, const Example& example
+    );
+
     // Ends what is under way, and all later calls.
     void stop() { stop_.request_stop(); }
 
   private:
-    using Entry = std::pair<std::string, std::shared_ptr<const Analysis>>;
+    static constexpr std::size_t kAnalysesKeptMax = 32;
+    static constexpr std::size_t kSheetsKeptMax = 4;  // of a megabyte, seldom some more
 
-    static constexpr std::size_t kKeptMax = 32;
-    static constexpr int kCallersMax = 2;  // the one that works, and one that waits
-
-    [[nodiscard]] std::shared_ptr<const Analysis> find(const std::string& id);
     [[nodiscard]] proto::Parsed<std::shared_ptr<const Analysis>> make(const Example& example);
 
     std::stop_source stop_;
-    std::atomic<int> callers_ = 0;
-    std::mutex working_;
-    std::mutex mutex_;
-    std::list<Entry> kept_;  // most recently used first
+    KeptResults<Analysis> analyses_{kAnalysesKeptMax};
+    KeptResults<std::string> sheets_{kSheetsKeptMax};
 };
 
 }  // namespace modelsynth::server

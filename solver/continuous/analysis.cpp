@@ -1,9 +1,41 @@
 #include "solver/continuous/analysis.h"
 
+#include "solver/continuous/expressions.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
 
+#include <algorithm>
+
 namespace modelsynth::continuous {
+
+namespace {
+
+std::vector<Analysis::Figure> list_figures(const ExampleReading& reading) {
+    const Topes& topes = reading.topes();
+    const Figures& figures = reading.figures();
+    ExpressionWriter writer(topes);
+    std::vector<Analysis::Figure> list;
+    for (std::size_t i = 0; i < std::min(figures.count(), Analysis::kFiguresListedMax); ++i) {
+        const auto label = static_cast<Label>(i);
+        const FamilySet relevant = figures.relevant(label);
+        Analysis::Figure& figure = list.emplace_back();
+        figure.rank = rank_of(topes, relevant);
+        for (std::size_t family = 0; family < topes.family_count(); ++family) {
+            if ((relevant >> family & 1) != 0) {
+                figure.families.push_back(family);
+            }
+        }
+        for (const ObjectId object : objects_in(figures.at(label))) {
+            figure.parts.push_back(
+                {reading.example().objects[object - 1U].name,
+                 writer.write(figures.at(label), object)}
+            );
+        }
+    }
+    return list;
+}
+
+}  // namespace
 
 Analysis analyse(const ExampleReading& reading) {
     Analysis analysis;
@@ -22,6 +54,7 @@ Analysis analyse(const ExampleReading& reading) {
         const FamilySet relevant = figures.relevant(static_cast<Label>(label));
         analysis.corner_figures += std::size_t{rank_of(topes, relevant) == 3};
     }
+    analysis.figure_list = list_figures(reading);
     analysis.warnings = spacings.conflicts;
     if (topes.family_count() > 12) {
         analysis.warnings.push_back(

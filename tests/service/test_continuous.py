@@ -5,13 +5,15 @@ import collections
 import json
 import math
 import pathlib
+import random
 import re
 import struct
 import zlib
+import xml.etree.ElementTree
 
 import pytest
 
-from checks import assert_faults, assert_problem, state_of, wait_until
+from checks import assert_faults, assert_problem, state_of, together, wait_until
 from glb_file import GlbFile
 from test_websocket import frames_of, watch
 from websocket_client import GLB
@@ -286,6 +288,135 @@ def test_an_uploaded_example(server):
     assert_problem(server.get(f"/v1/examples/{example['id']}/success.svg"), 404, "not-found")
 
 
+def evaluated(expression, families, direction):
+    """The value of a printed expression in a direction, by Python's own reading of it."""
+    python = expression.replace("∧", "and").replace("∨", "or").replace("¬", "not ")
+    sides = {family["name"]: sum(n * p for n, p in zip(family["normal"], direction)) < 0
+             for family in families}
+    return bool(eval(python, {"__builtins__": {}}, sides))  # pylint: disable=eval-used
+
+
+@pytest.mark.parametrize("example", ["hut", "houses", "fractals", "roads"])
+def test_the_analysis_lists_figures(server, example):
+    if example == "hut":
+        example = server.request("POST", "/v1/examples", HUT).json()["id"]
+    analysis = server.get(f"/v1/examples/{example}/analysis").json()
+    figures = analysis["figure_list"]
+    assert len(figures) == analysis["figures_listed"] == analysis["labels"]
+    assert sum(figure["rank"] == 3 for figure in figures) == analysis["corner_labels"]
+    families = analysis["families"]
+    assert [family["name"] for family in families] == \
+        [f"h{number + 1}" for number in range(len(families))]
+    directions = [[random.Random(seed).gauss(0, 1) for _ in range(3)] for seed in range(50)]
+    seen = set()
+    for number, figure in enumerate(figures):
+        assert set(figure) == {"number", "rank", "objects", "expressions", "families"}
+        assert figure["number"] == number
+        assert list(figure["expressions"]) == figure["objects"]
+        assert figure["families"] == sorted(set(figure["families"]))
+        named = {name for text in figure["expressions"].values()
+                 for name in re.findall(r"h\d+", text)}
+        assert named <= {families[index]["name"] for index in figure["families"]}
+        assert (figure["rank"] == 0) == (not figure["families"])
+        for direction in directions:
+            assert sum(evaluated(text, families, direction)
+                       for text in figure["expressions"].values()) <= 1
+        seen.add(json.dumps(figure["expressions"]))
+    assert len(seen) == len(figures)
+
+
+def test_figures_of_a_hut_are_what_stands_there(server):
+    example = server.request("POST", "/v1/examples", HUT).json()["id"]
+    analysis = server.get(f"/v1/examples/{example}/analysis").json()
+    normals = {tuple(family["normal"]): family["name"] for family in analysis["families"]}
+    up, east, south = normals[(0, 1, 0)], normals[(1, 0, 0)], normals[(0, 0, 1)]
+    assert up == "h1"
+    written = [figure["expressions"] for figure in analysis["figure_list"]]
+    assert {} in written and {"grass": "1"} in written
+    assert {"grass": up} in written  # the bare ground
+    # A wall's corner on the ground, its numbers ascending.
+    corner = " ∧ ".join(f"¬{up}" if name == up else name for name in sorted([up, east, south]))
+    assert {"grass": up, "wall": corner} in written
+
+
+def titles_of(svg):
+    root = xml.etree.ElementTree.fromstring(svg)
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    return [title.text for title in root.iter("{http://www.w3.org/2000/svg}title")]
+
+
+def test_figures_are_drawn(server):
+    example = server.request("POST", "/v1/examples", HUT).json()["id"]
+    analysis = server.get(f"/v1/examples/{example}/analysis").json()
+    url = analysis["urls"]["figures"]
+    assert url == f"/v1/examples/{example}/figures.svg"
+    sheet = server.get(url)
+    assert sheet.status == 200 and sheet.headers["content-type"] == "image/svg+xml"
+    assert sheet.body == server.get(url).body
+    titles = titles_of(sheet.body)
+    assert len(titles) == 1 + analysis["labels"]
+    ranks = [title.split(";")[0].split(" ")[1] for title in titles[1:]]
+    assert ranks == sorted(ranks, key=["corner", "edge", "face", "inside"].index)
+    figure = next(one for one in analysis["figure_list"] if len(one["objects"]) == 2)
+    one = server.get(f"{url}?figure={figure['number']}")
+    assert one.status == 200 and one.headers["content-type"] == "image/svg+xml"
+    [title] = titles_of(one.body)
+    for name, expression in figure["expressions"].items():
+        assert f"{name}: {expression}" in title
+        assert f"{name}: {expression}" in one.body.decode()
+    head = server.request("HEAD", url)
+    assert head.status == 200 and head.headers["content-type"] == "image/svg+xml"
+
+
+def test_what_has_no_figures(server):
+    assert_problem(server.get("/v1/examples/castle/figures.svg"), 404, "not-found")
+    assert_problem(server.get("/v1/examples/nothing/figures.svg"), 404, "not-found")
+    labels = server.get("/v1/examples/houses/analysis").json()["labels"]
+    url = "/v1/examples/houses/figures.svg"
+    assert server.get(f"{url}?figure={labels - 1}").status == 200
+    for query, status, kind in ((f"figure={labels}", 422, "invalid-request"),
+                                ("figure=-1", 400, "malformed-request"),
+                                ("figure=", 400, "malformed-request"),
+                                ("figure=1&figure=2", 400, "malformed-request"),
+                                ("number=1", 400, "malformed-request")):
+        problem = assert_problem(server.get(f"{url}?{query}"), status, kind)
+        assert f'"{query.split("=")[0]}"' in problem["detail"]
+    refused = server.request("POST", url, {})
+    assert_problem(refused, 405, "method-not-allowed")
+    assert refused.headers["allow"] == "GET, HEAD"
+
+
+def test_of_many_figures_the_first_are_listed_and_drawn(server):
+    boxes = []
+    for i in range(40):
+        (x0, x1), (z0, z1) = ((3 * i, 3 * i + 1), (0, 1))
+        boxes.append({"object": f"box {i}", "vertices": [
+            [x0, 0, z0], [x1, 0, z0], [x1, 1, z0], [x0, 1, z0],
+            [x0, 0, z1], [x1, 0, z1], [x1, 1, z1], [x0, 1, z1]],
+            "faces": HUT["polyhedra"][0]["faces"]})
+    answer = server.request("POST", "/v1/examples", {
+        "kind": "continuous", "name": "boxes", "spacing": 1, "polyhedra": boxes,
+        "objects": [{"name": f"box {i}"} for i in range(40)]})
+    assert answer.status == 201, answer.body
+    url = f"/v1/examples/{answer.json()['id']}"
+    analysis = server.get(f"{url}/analysis").json()
+    assert analysis["labels"] == 40 * 27 + 1
+    assert analysis["figures_listed"] == len(analysis["figure_list"]) == 1024
+    titles = titles_of(server.get(f"{url}/figures.svg").body)
+    assert len(titles) == 1 + 256 and "the first 256 of 1081" in titles[0]
+    assert titles_of(server.get(f"{url}/figures.svg?figure=1080").body)[0].startswith("1080 ")
+
+
+def test_figures_of_an_example_are_drawn_by_few_at_a_time(server):
+    example = server.request("POST", "/v1/examples", {**HUT, "name": "drawn at once"}).json()["id"]
+    answers = together(6, lambda _: server.request("GET", f"/v1/examples/{example}/figures.svg"))
+    good = [answer.body for answer in answers if answer.status == 200]
+    assert good and len(set(good)) == 1
+    for answer in answers:
+        if answer.status != 200:
+            assert_problem(answer, 503, "busy")
+
+
 def test_an_example_as_glb_is_the_same_example(server):
     """The example's own picture, sent back, has its solids again."""
     example = server.request("POST", "/v1/examples", {**HUT, "ground": "wall"}).json()
@@ -414,3 +545,10 @@ def test_the_requests_of_the_guide_are_done(server):
             "Prefer": "wait=60", "Content-Type": "application/json"})
         assert answer.json()["state"] == "succeeded", answer.body
         assert answer.json()["result"]["stats"]["changed"] > 0.01
+
+
+def test_the_addresses_of_the_guide_are_there(server):
+    addresses = re.findall(r"http://127.0.0.1:8080(/[^\s']*)", _GUIDE.read_text())
+    assert len(addresses) == 3
+    for address in addresses:
+        assert server.get(address).status == 200, address

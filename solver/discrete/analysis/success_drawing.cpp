@@ -1,5 +1,7 @@
 #include "solver/discrete/analysis/success_drawing.h"
 
+#include "solver/core/svg_text.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,48 +45,14 @@ constexpr const char* kStyle =
     "}\n"
     "</style>\n";
 
-// Tenths of a unit, without a locale.
-std::string number(double value) {
-    const auto tenths = static_cast<std::int64_t>(std::lround(value * 10));
-    const std::string sign = tenths < 0 ? "-" : "";
-    const std::int64_t size = std::abs(tenths);
-    return sign + std::to_string(size / 10) +
-           (size % 10 == 0 ? "" : "." + std::to_string(size % 10));
-}
-
-// Text as XML may hold it; control characters, which it cannot hold, become question marks.
-std::string escape(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) {
-        escaped += c == '&'                                ? "&amp;"
-                   : c == '<'                              ? "&lt;"
-                   : c == '>'                              ? "&gt;"
-                   : static_cast<unsigned char>(c) < 0x20U ? "?"
-                                                           : std::string(1, c);
-    }
-    return escaped;
-}
-
-// A long name, cut between two characters of UTF-8.
-std::string shorten(const std::string& name) {
-    if (name.size() <= kNameLengthMax) {
-        return name;
-    }
-    std::size_t length = kNameLengthMax - 1;
-    while (length > 0 && (static_cast<unsigned char>(name[length]) & 0xC0U) == 0x80U) {
-        --length;
-    }
-    return name.substr(0, length) + "…";
-}
-
 std::string line(const char* kind, double x1, double y1, double x2, double y2) {
-    return std::string("<line class=\"") + kind + "\" x1=\"" + number(x1) + "\" y1=\"" +
-           number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" + number(y2) + "\"/>\n";
+    return std::string("<line class=\"") + kind + "\" x1=\"" + svg_number(x1) + "\" y1=\"" +
+           svg_number(y1) + "\" x2=\"" + svg_number(x2) + "\" y2=\"" + svg_number(y2) + "\"/>\n";
 }
 
 std::string text_at(double x, double y, const char* anchor, const std::string& text) {
-    return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\">" +
-           text + "</text>\n";
+    return "<text x=\"" + svg_number(x) + "\" y=\"" + svg_number(y) + "\" text-anchor=\"" + anchor +
+           "\">" + text + "</text>\n";
 }
 
 // Where shares lie, bottom to top.
@@ -152,12 +120,12 @@ std::string draw_axes(const Across& across) {
         svg += line("grid", across.of(width), kTop, across.of(width), kBottom);
         svg += text_at(across.of(width), kBottom + 20, "middle", std::to_string(width));
     }
-    svg += "<path class=\"axis\" d=\"M" + number(kLeft) + " " + number(kTop) + "V" +
-           number(kBottom) + "H" + number(kRight) + "\"/>\n";
+    svg += "<path class=\"axis\" d=\"M" + svg_number(kLeft) + " " + svg_number(kTop) + "V" +
+           svg_number(kBottom) + "H" + svg_number(kRight) + "\"/>\n";
     svg += text_at(
         (kLeft + kRight) / 2, kBottom + 46, "middle", "width and depth of the model (cells)"
     );
-    svg += "<text transform=\"translate(22 " + number((kTop + kBottom) / 2) +
+    svg += "<text transform=\"translate(22 " + svg_number((kTop + kBottom) / 2) +
            ") rotate(-90)\" text-anchor=\"middle\">runs that succeed (%)</text>\n";
     return svg;
 }
@@ -171,7 +139,7 @@ std::string mark(double x, double y, std::size_t style) {
         "m0 -5l5 5l-5 5l-5 -5z",
         "m0 5l5 -9h-10z",
         "m-5 -2h10v4h-10z"};
-    return "<path d=\"M" + number(x) + " " + number(y) + kShapes[style] +
+    return "<path d=\"M" + svg_number(x) + " " + svg_number(y) + kShapes[style] +
            "\" fill=\"currentColor\"/>\n";
 }
 
@@ -182,9 +150,9 @@ std::string draw_curve(const SuccessCurve& curve, const Across& across, std::siz
         const double x = across.of(point.size.x);
         const double y = height_of(share_of(point));
         const auto [low, high] = confidence_of(point);
-        path += (path.empty() ? "M" : "L") + number(x) + " " + number(y);
-        marks += "<path class=\"bar\" stroke=\"currentColor\" d=\"M" + number(x) + " " +
-                 number(height_of(low)) + "V" + number(height_of(high)) + "\"/>\n";
+        path += (path.empty() ? "M" : "L") + svg_number(x) + " " + svg_number(y);
+        marks += "<path class=\"bar\" stroke=\"currentColor\" d=\"M" + svg_number(x) + " " +
+                 svg_number(height_of(low)) + "V" + svg_number(height_of(high)) + "\"/>\n";
         marks += mark(x, y, style);
     }
     if (path.empty()) {
@@ -197,9 +165,11 @@ std::string draw_curve(const SuccessCurve& curve, const Across& across, std::siz
 std::string draw_legend(const SuccessCurve& curve, std::size_t index, std::size_t style) {
     const double y = kTop + 10 + kLegendLine * static_cast<double>(index);
     return "<path class=\"line\" stroke=\"currentColor\" stroke-dasharray=\"" +
-           std::string(kDashes[style]) + "\" d=\"M" + number(kLegendLeft) + " " + number(y) +
-           "h26\"/>\n" + mark(kLegendLeft + 13, y, style) +
-           text_at(kLegendLeft + 34, y + 4, "start", escape(shorten(curve.name)));
+           std::string(kDashes[style]) + "\" d=\"M" + svg_number(kLegendLeft) + " " +
+           svg_number(y) + "h26\"/>\n" + mark(kLegendLeft + 13, y, style) +
+           text_at(
+               kLegendLeft + 34, y + 4, "start", svg_escaped(shortened(curve.name, kNameLengthMax))
+           );
 }
 
 }  // namespace
@@ -214,8 +184,8 @@ std::string draw_success_curves(std::span<const SuccessCurve> curves) {
     svg += draw_axes(across);
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const std::size_t style = i % kStyleCount;
-        svg += "<g class=\"c" + std::to_string(style) + "\">\n<title>" + escape(curves[i].name) +
-               "</title>\n";
+        svg += "<g class=\"c" + std::to_string(style) + "\">\n<title>" +
+               svg_escaped(curves[i].name) + "</title>\n";
         svg += draw_curve(curves[i], across, style);
         svg += draw_legend(curves[i], i, style);
         svg += "</g>\n";
