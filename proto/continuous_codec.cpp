@@ -3,7 +3,12 @@
 #include "proto/blocks_codec.h"
 #include "proto/region_codec.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace modelsynth::proto {
 
@@ -143,7 +148,7 @@ std::optional<Constraint> read_constraint(const Value& value, const RequestLimit
         }
     } else if (const auto objects = reader.required("objects")) {
         constraint.objects =
-            objects->strings(0, continuous::kObjectTypesMax, limits.name_characters_max)
+            objects->strings(1, continuous::kObjectTypesMax, limits.name_characters_max)
                 .value_or(std::vector<std::string>());
     }
     if (continuous::has_region(constraint.rule)) {
@@ -155,12 +160,37 @@ std::optional<Constraint> read_constraint(const Value& value, const RequestLimit
 
 std::vector<Constraint> read_constraints(const Value& value, const RequestLimits& limits) {
     std::vector<Constraint> constraints;
-    if (const auto values = value.array(0, limits.constraints_max)) {
-        for (const Value& one : *values) {
-            if (auto constraint = read_constraint(one, limits)) {
-                constraints.push_back(std::move(*constraint));
-            }
+    const auto values = value.array(0, limits.constraints_max);
+    if (!values) {
+        return constraints;
+    }
+    // Masks are counted before any is unpacked.
+    const auto has_mask = [](const Value& one) {
+        return one.json().is_object() && one.json().contains("mask");
+    };
+    if (std::count_if(values->begin(), values->end(), has_mask) >
+        static_cast<std::ptrdiff_t>(limits.masks_max)) {
+        value.fault(
+            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
+            true
+        );
+        return constraints;
+    }
+    std::size_t member_rules = 0;
+    for (const Value& one : *values) {
+        auto constraint = read_constraint(one, limits);
+        if (!constraint) {
+            continue;
         }
+        if (std::holds_alternative<ConnectedRule>(constraint->rule) &&
+            ++member_rules == limits.member_rules_max + 1) {
+            value.fault(
+                "has more than " + std::to_string(limits.member_rules_max) +
+                    " constraints of the kind connected; the limit is member_rules_max",
+                true
+            );
+        }
+        constraints.push_back(std::move(*constraint));
     }
     return constraints;
 }
