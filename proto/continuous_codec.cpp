@@ -133,12 +133,15 @@ Rule read_rule(std::size_t kind, ObjectReader& reader) {
     }
 }
 
-std::optional<Constraint> read_constraint(const Value& value, const RequestLimits& limits) {
+// One that cannot be read keeps its place in the list, so that faults of the others are told at
+// theirs, as a rule that says nothing.
+Constraint read_constraint(const Value& value, const RequestLimits& limits) {
+    const Constraint nothing = {ForbiddenRule{}};
     ObjectReader reader(value);
     const auto kind_value = reader.required("kind");
     const auto kind = kind_value ? kind_value->one_of(continuous::kRuleNames) : std::nullopt;
     if (!kind) {
-        return std::nullopt;
+        return nothing;
     }
     Constraint constraint;
     constraint.rule = read_rule(*kind, reader);
@@ -155,7 +158,7 @@ std::optional<Constraint> read_constraint(const Value& value, const RequestLimit
         constraint.region = read_metre_region(reader, limits);
     }
     reader.finish();
-    return constraint;
+    return constraint.objects.empty() ? nothing : constraint;
 }
 
 std::vector<Constraint> read_constraints(const Value& value, const RequestLimits& limits) {
@@ -178,11 +181,8 @@ std::vector<Constraint> read_constraints(const Value& value, const RequestLimits
     }
     std::size_t member_rules = 0;
     for (const Value& one : *values) {
-        auto constraint = read_constraint(one, limits);
-        if (!constraint) {
-            continue;
-        }
-        if (std::holds_alternative<ConnectedRule>(constraint->rule) &&
+        const Constraint& constraint = constraints.emplace_back(read_constraint(one, limits));
+        if (std::holds_alternative<ConnectedRule>(constraint.rule) &&
             ++member_rules == limits.member_rules_max + 1) {
             value.fault(
                 "has more than " + std::to_string(limits.member_rules_max) +
@@ -190,7 +190,6 @@ std::vector<Constraint> read_constraints(const Value& value, const RequestLimits
                 true
             );
         }
-        constraints.push_back(std::move(*constraint));
     }
     return constraints;
 }
