@@ -122,38 +122,44 @@ class FaultFinder {
 
     // False where the planes of the model cannot be said.
     bool check_families() {
-        const std::size_t before = faults_.size();
+        bool is_sound = true;
         std::vector<std::string> place_of(reading_.topes().family_count());
         for (std::size_t i = 0; i < parameters_.spacings.size(); ++i) {
-            check_family("/spacing/" + std::to_string(i), parameters_.spacings[i].normal, place_of);
+            const std::string pointer = "/spacing/" + std::to_string(i);
+            is_sound &= check_family(pointer, parameters_.spacings[i].normal, place_of);
         }
         for (std::size_t i = 0; i < parameters_.offsets.size(); ++i) {
-            check_family("/offsets/" + std::to_string(i), parameters_.offsets[i].normal, place_of);
+            const std::string pointer = "/offsets/" + std::to_string(i);
+            is_sound &= check_family(pointer, parameters_.offsets[i].normal, place_of);
         }
-        return faults_.size() == before;
+        return is_sound;
     }
 
-    void check_family(
+    // False where the planes are of no family, or of one that has some.
+    bool check_family(
         const std::string& pointer,
         const std::array<double, 3>& normal,
         std::vector<std::string>& place_of
     ) {
-        const bool has_length = point_of(normal).norm() > 1e-9;  // else that is a fault of its own
-        const auto family = reading_.topes().find_family(point_of(normal));
-        if (!has_length) {
-            return;
+        if (point_of(normal).norm() <= 1e-9) {
+            return false;  // a fault of its own
         }
+        const auto family = reading_.topes().find_family(point_of(normal));
         if (!family) {
             faults_.push_back(
                 {pointer + "/normal", "no face of the example has this normal or its opposite"}
             );
-        } else if (std::string& place = place_of[*family]; !place.empty()) {
+            return false;
+        }
+        std::string& place = place_of[*family];
+        if (!place.empty()) {
             faults_.push_back(
                 {pointer + "/normal", "these planes are those of " + place + " already"}
             );
-        } else {
-            place = pointer;
+            return false;
         }
+        place = pointer;
+        return true;
     }
 
     void check_size() {

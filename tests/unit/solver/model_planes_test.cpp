@@ -253,6 +253,10 @@ TEST(ModelPlanes, AreRefusedWhereTheExampleHasNone) {
             "/offsets/2/normal",
             "/offsets/3/normal"})
     );
+    // A normal of no length is a fault of its own, and no planes are made of it.
+    parameters.spacings = {{{0, 0, 0}, 2}};
+    parameters.offsets = {{{0, 0, 0}, {1}}};
+    EXPECT_EQ(fault_pointers(reading, parameters), Pointers{});
 }
 
 TEST(ModelPlanes, AreRefusedWhereThereAreTooMany) {
