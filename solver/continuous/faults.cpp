@@ -102,7 +102,9 @@ class FaultFinder {
 
     void check_constraint(const std::string& pointer, const Constraint& constraint) {
         if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
-            check_object(pointer + "/object", constraint.objects.front());
+            if (!constraint.objects.empty()) {  // else that is a fault of its own
+                check_object(pointer + "/object", constraint.objects.front());
+            }
             const Point normal = point_of(dimension->normal);
             const bool has_length = normal.norm() > 1e-9;  // else that is a fault of its own
             if (has_length && !reading_.topes().find_family(normal)) {

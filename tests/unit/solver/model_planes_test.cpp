@@ -257,6 +257,10 @@ TEST(ModelPlanes, AreRefusedWhereTheExampleHasNone) {
     parameters.spacings = {{{0, 0, 0}, 2}};
     parameters.offsets = {{{0, 0, 0}, {1}}};
     EXPECT_EQ(fault_pointers(reading, parameters), Pointers{});
+    // So is a dimension that names no object.
+    parameters = of_size(reading, {9, 4, 9});
+    parameters.constraints = {{DimensionRule{{1, 0, 0}, 1}, {}}};
+    EXPECT_EQ(fault_pointers(reading, parameters), Pointers{});
 }
 
 TEST(ModelPlanes, AreRefusedWhereThereAreTooMany) {
