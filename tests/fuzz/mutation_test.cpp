@@ -264,7 +264,9 @@ constexpr const char* kWedge =
 TEST(Fuzz, Solids) {
     const std::string request =
         std::string(R"({"solver":"continuous","example":)") + kWedge +
-        R"(,"seed":7,"parameters":{"size":[5,3.5,6],"spacing":1,"blocks":{"size":[4,4,4]},)"
+        R"(,"seed":7,"parameters":{"size":[5,3.5,6],"blocks":{"size":[4,4,4]},)"
+        R"("spacing":[{"normal":[0,1,0],"spacing":0.75},{"spacing":1}],)"
+        R"("offsets":[{"normal":[0,0,1],"offsets":[0.5,2,4.25]}],)"
         R"("density":0.5,"weights":{"wall":3},"constraints":[{"kind":"dimension","object":"wall",)"
         R"("normal":[0,0,1]}]},"tags":{}})";
     std::size_t made = 0;
