@@ -301,6 +301,37 @@ TEST(SolidsForbidden, LeaveTheirRegion) {
     EXPECT_GT(in_east, 0U);
 }
 
+// Roads lie below y = 0.
+TEST(SolidsForbidden, AreNotSunkIntoTheGroundEither) {
+    const Reading roads = examples::find_solids("roads");
+    const std::vector<ObjectId>& network = roads->example().connected.front();
+    std::vector<std::string> names;
+    for (const ObjectId road : network) {
+        names.push_back(roads->example().objects[road - 1U].name);
+    }
+    const auto corners = [&](const Rule& rule, const Region& region) {
+        const Made made = make(roads, asking(roads, {120, 9, 120}, {{rule, names, region}}), 4);
+        std::array<std::size_t, 2> of_halves = {};
+        for (const SurfacePolygon& polygon : made.surface.polygons) {
+            if (std::find(network.begin(), network.end(), polygon.object) != network.end()) {
+                for (const std::uint32_t point : polygon.loops.front()) {
+                    ++of_halves.at(made.surface.points[point].x() < 60 - 1e-9 ? 0 : 1);
+                }
+            }
+        }
+        return of_halves;
+    };
+    Region west;
+    west.voxels = Voxels{{2, 1, 1}, {1, 0}};
+    for (const Rule& rule : {Rule(ForbiddenRule{}), Rule(ProbabilityRule{0})}) {
+        EXPECT_EQ(corners(rule, {}), (std::array<std::size_t, 2>{0, 0}));
+        const auto in_halves = corners(rule, west);
+        EXPECT_EQ(in_halves[0], 0U);
+        EXPECT_GT(in_halves[1], 0U);
+    }
+    EXPECT_GT(corners(ProbabilityRule{1}, west)[0], 0U);
+}
+
 TEST(SolidsForbidden, EmptySpaceMeansThatSomethingIsThere) {
     const Reading reading = read_boxes();
     const MetreBox place = {{4, 0, 4}, {6, 2, 6}};
