@@ -1,7 +1,7 @@
 #include "proto/analysis_codec.h"
 
 #include "proto/json.h"
-#include "solver/continuous/figure_drawing.h"
+#include "solver/continuous/display/figure_drawing.h"
 #include "solver/continuous/reading.h"
 #include "solver/discrete/analysis/success_drawing.h"
 

@@ -358,20 +358,8 @@ struct RuleWriter {
 
 std::vector<Constraint> read_constraints(const Value& value, const RequestLimits& limits) {
     std::vector<Constraint> constraints;
-    const auto values = value.array(0, limits.constraints_max);
+    const auto values = constraint_values(value, limits);
     if (!values) {
-        return constraints;
-    }
-    // Masks are counted before any is unpacked.
-    const auto has_mask = [](const Value& one) {
-        return one.json().is_object() && one.json().contains("mask");
-    };
-    if (std::count_if(values->begin(), values->end(), has_mask) >
-        static_cast<std::ptrdiff_t>(limits.masks_max)) {
-        value.fault(
-            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
-            true
-        );
         return constraints;
     }
     std::size_t member_rules = 0;

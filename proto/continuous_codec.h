@@ -7,15 +7,21 @@
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 
 namespace modelsynth::proto {
 
+inline constexpr double kMetresMax = 1e5;
+
 // Three numbers of at most that size either way.
 [[nodiscard]] std::optional<continuous::Point> read_point(const Value& value, double extent_max);
 [[nodiscard]] OrderedJson write_point(const continuous::Point& point);
+
+// Three numbers that are not all 0.
+[[nodiscard]] std::optional<std::array<double, 3>> read_normal(const Value& value);
 
 // What stands under `parameters` of a continuous job; faults are noted in the value's list.
 [[nodiscard]] continuous::Parameters read_continuous_parameters(

@@ -2,6 +2,7 @@
 
 #include "proto/image_mask.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -83,6 +84,24 @@ std::optional<Mask> read_mask(const Value& value, const RequestLimits& limits) {
         return std::nullopt;
     }
     return Mask{image->width, image->height, std::move(image->values), text};
+}
+
+std::optional<std::vector<Value>> constraint_values(
+    const Value& list, const RequestLimits& limits
+) {
+    auto values = list.array(0, limits.constraints_max);
+    const auto has_mask = [](const Value& one) {
+        return one.json().is_object() && one.json().contains("mask");
+    };
+    if (values && std::count_if(values->begin(), values->end(), has_mask) >
+                      static_cast<std::ptrdiff_t>(limits.masks_max)) {
+        list.fault(
+            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
+            true
+        );
+        return std::nullopt;
+    }
+    return values;
 }
 
 Region read_region(ObjectReader& reader, const RequestLimits& limits) {

@@ -8,6 +8,7 @@
 #include "solver/discrete/parameters.h"
 
 #include <optional>
+#include <vector>
 
 namespace modelsynth::proto {
 
@@ -16,6 +17,12 @@ namespace modelsynth::proto {
 
 // Puts the fields of a region with what is written of the object.
 void write_region(const discrete::Region& region, OrderedJson& written);
+
+// The elements of a list of constraints, when there are neither too many nor too many masks in
+// them, which are counted before any is unpacked.
+[[nodiscard]] std::optional<std::vector<Value>> constraint_values(
+    const Value& list, const RequestLimits& limits
+);
 
 // Its last two by themselves, as other regions have them.
 [[nodiscard]] std::optional<Mask> read_mask(const Value& value, const RequestLimits& limits);

@@ -23,7 +23,6 @@ using continuous::ObjectType;
 using continuous::Point;
 using continuous::Polyhedron;
 
-constexpr double kMetresMax = 1e5;
 constexpr std::size_t kPolyhedraMax = 4096;
 constexpr std::size_t kCornersMax = 65536;  // of one solid
 constexpr std::size_t kFacesMax = 20000;    // of one solid

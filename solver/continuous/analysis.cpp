@@ -1,6 +1,6 @@
 #include "solver/continuous/analysis.h"
 
-#include "solver/continuous/expressions.h"
+#include "solver/continuous/display/expressions.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
 

@@ -11,7 +11,7 @@ Connections::Connections(
     : figures_(figures),
       skeleton_(skeleton),
       connections_(connections),
-      is_inside_(skeleton.vertex_count()) {
+      is_inside_(skeleton.beyond() + std::size_t{1}) {
     for (std::size_t i = 0; i < connections.size(); ++i) {
         states_.push_back(
             {Members(skeleton.site_count()), 0, SurroundingsGraph<Skeleton>(skeleton), 0, {}}
@@ -114,8 +114,11 @@ std::vector<std::uint32_t> Connections::put_all(std::span<const Label> model) {
 Membership Connections::membership(
     const Connection& connection, std::span<const Label> model, Site site
 ) const {
+    if (site == skeleton_.beyond()) {
+        return connection.has_ground ? Membership::kYes : Membership::kNo;
+    }
     Label figure = kNoLabel;
-    if (site < skeleton_.vertex_count()) {
+    if (!skeleton_.is_edge(site)) {
         figure = model[site];
     } else {
         const Skeleton::Edge& edge = skeleton_.edge(site);

@@ -15,11 +15,12 @@
 
 namespace modelsynth::continuous {
 
-// Objects that hang together: the figures in which one of them takes part, and in how many
-// components they may come.
+// Objects that hang together: the figures in which one of them takes part, in how many components
+// they may come, and whether the ground is one of them, which goes on beyond the model's box.
 struct Connection {
     LabelSet figures;
     std::uint32_t components = 1;
+    bool has_ground = false;
 };
 
 // Counts the components that connected objects come in (thesis 4.6.2) while one part of the model

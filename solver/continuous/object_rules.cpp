@@ -1,5 +1,6 @@
 #include "solver/continuous/object_rules.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -10,8 +11,20 @@ namespace modelsynth::continuous {
 
 namespace {
 
-// What is looked at of a cell is so many spacings away from its vertex.
+// What is looked at of a cell is away from its vertex by this share of the least distance of
+// parallel planes.
 constexpr double kLook = 0.2;
+
+double least_distance(const Arrangement& arrangement) {
+    double least = arrangement.frame().cell;
+    for (std::size_t family = 0; family < arrangement.topes().family_count(); ++family) {
+        const PlaneOffsets& planes = arrangement.planes(family);
+        for (std::size_t i = 1; i < planes.size(); ++i) {
+            least = std::min(least, planes[i] - planes[i - 1]);
+        }
+    }
+    return least;
+}
 
 // How a cell lies to a region. Below y = 0 the ground is left alone, and what is to fill a region
 // need not go on; but what is sunk into the ground is kept out of what is above it.
@@ -136,7 +149,7 @@ void narrow_to_regions(
     const Arrangement& arrangement,
     SiteDomains& domains
 ) {
-    const double look = kLook * arrangement.frame().cell;
+    const double look = kLook * least_distance(arrangement);
     for (const Constraint& constraint : *parameters.constraints) {
         if (!bans_objects(constraint)) {
             continue;

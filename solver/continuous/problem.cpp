@@ -39,7 +39,12 @@ std::vector<Connection> connections_of(
     for (const Constraint& constraint : *parameters.constraints) {
         if (const auto* rule = std::get_if<ConnectedRule>(&constraint.rule)) {
             const ObjectSet objects = objects_named(reading.example(), constraint.objects);
-            connections.push_back({figures_of(reading.figures(), objects), rule->components});
+            const auto ground = reading.example().ground;
+            connections.push_back(
+                {figures_of(reading.figures(), objects),
+                 rule->components,
+                 ground && objects[*ground]}
+            );
         }
     }
     return connections;

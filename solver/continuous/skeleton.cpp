@@ -3,27 +3,28 @@
 namespace modelsynth::continuous {
 
 Skeleton::Skeleton(const Arrangement& arrangement) {
-    const std::size_t count = arrangement.vertex_count();
-    first_end_.assign(count + 1, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto vertex = static_cast<Site>(i);
+    const auto beyond = static_cast<Site>(arrangement.vertex_count());
+    for (Site vertex = 0; vertex < beyond; ++vertex) {
         for (const ArrangementEdge& edge : arrangement.edges(vertex)) {
             if (edge.end == kNoSite) {
-                continue;
-            }
-            ++first_end_[i + 1];
-            if (edge.heading % 2 == 0) {
+                edges_.push_back({vertex, beyond, edge.heading});
+            } else if (edge.heading % 2 == 0) {  // else it is seen from its other end
                 edges_.push_back({vertex, edge.end, edge.heading});
             }
         }
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        first_end_[i + 1] += first_end_[i];
+    first_end_.assign(beyond + std::size_t{2}, 0);
+    for (const Edge& edge : edges_) {
+        ++first_end_[edge.from + 1];
+        ++first_end_[edge.to + 1];
     }
-    ends_.resize(first_end_[count]);
+    for (std::size_t site = 0; site <= beyond; ++site) {
+        first_end_[site + 1] += first_end_[site];
+    }
+    ends_.resize(first_end_.back());
     std::vector<std::uint32_t> next(first_end_.begin(), first_end_.end() - 1);
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-        const auto site = static_cast<Site>(count + e);
+        const auto site = static_cast<Site>(beyond + 1 + e);
         ends_[next[edges_[e].from]++] = site;
         ends_[next[edges_[e].to]++] = site;
     }

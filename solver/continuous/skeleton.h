@@ -11,10 +11,10 @@
 
 namespace modelsynth::continuous {
 
-// The vertices of an arrangement, numbered as there, and after them its edges, as a topology in
-// which an edge lies between its two ends: how what stands at them hangs together. Edges that
-// leave the box are none of it.
-// Cost: 4 bytes an edge's end, 12 an edge. Thread-safe.
+// The vertices of an arrangement, numbered as there, then what lies beyond its box, as one, and
+// after that its edges, as a topology in which an edge lies between its two ends: how what stands
+// at them hangs together. Edges that leave the box end beyond it. Cost: 4 bytes an edge's end, 12
+// an edge. Thread-safe.
 class Skeleton {
   public:
     static constexpr std::size_t kRelationCount = 0;
@@ -28,27 +28,29 @@ class Skeleton {
     // Requires: the arrangement outlives it.
     explicit Skeleton(const Arrangement& arrangement);
 
-    [[nodiscard]] std::size_t vertex_count() const { return first_end_.size() - 1; }
+    [[nodiscard]] Site beyond() const { return static_cast<Site>(first_end_.size() - 2); }
 
-    [[nodiscard]] std::size_t site_count() const { return vertex_count() + edges_.size(); }
+    [[nodiscard]] std::size_t site_count() const { return beyond() + 1 + edges_.size(); }
+
+    [[nodiscard]] bool is_edge(Site site) const { return site > beyond(); }
 
     // Requires: a site that is an edge.
-    [[nodiscard]] const Edge& edge(Site site) const { return edges_[site - vertex_count()]; }
+    [[nodiscard]] const Edge& edge(Site site) const { return edges_[site - beyond() - 1]; }
 
-    // The edges at a vertex, as sites.
+    // The edges at a vertex, or those that leave the box, as sites.
     [[nodiscard]] std::span<const Site> edges_at(Site vertex) const {
         return {ends_.data() + first_end_[vertex], first_end_[vertex + 1] - first_end_[vertex]};
     }
 
     template <class Visit>
     void for_each_arc(Site site, Visit visit) const {
-        if (site < vertex_count()) {
+        if (is_edge(site)) {
+            visit(edge(site).from, RelationId{0});
+            visit(edge(site).to, RelationId{0});
+        } else {
             for (const Site edge : edges_at(site)) {
                 visit(edge, RelationId{0});
             }
-        } else {
-            visit(edge(site).from, RelationId{0});
-            visit(edge(site).to, RelationId{0});
         }
     }
 

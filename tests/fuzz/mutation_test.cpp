@@ -135,6 +135,20 @@ bool is_made(const Task& task) {
     return finished.has_value();
 }
 
+// What is accepted of a request can be made or is refused with a reason.
+void fuzz_request(const std::string& request, std::uint32_t seed) {
+    std::size_t made = 0;
+    fuzz(request, seed, [&](const std::string& text) {
+        const auto parsed = read_request(text);
+        if (!parsed) {
+            return false;
+        }
+        made += is_made(parsed->task) ? 1U : 0U;
+        return true;
+    });
+    EXPECT_GT(made, 1U);  // the request as it stands, and others
+}
+
 constexpr const char* kExample = R"({"kind":"discrete","name":"line","cell":[1,1,1],
 "pieces":[{"name":"empty"},{"name":"ground"},{"name":"wall","weight":2,"turns":1}],"size":[2,2,2],
 "cells":[1,1,1,1,0,2,0,0],"empty":"empty","adjacency":{"x":[["wall","wall"]]},
@@ -171,16 +185,7 @@ TEST(Fuzz, Constraints) {
         R"({"kind":"acyclic","pieces":["wall"],"box":{"min":[0,1,0],"max":[3,2,3]}},)"
         R"({"kind":"path","pieces":["ground"],"from":[0,0,0],"to":[3,0,1]},)"
         R"({"kind":"fixed","pieces":["ground"],"voxels":{"size":[1,2,1],"values":[0.75,0]}}]}})";
-    std::size_t made = 0;
-    fuzz(request, 8, [&](const std::string& text) {
-        const auto parsed = read_request(text);
-        if (!parsed) {
-            return false;
-        }
-        made += is_made(parsed->task) ? 1U : 0U;
-        return true;
-    });
-    EXPECT_GT(made, 1U);  // the request as it stands, and others
+    fuzz_request(request, 8);
 }
 
 // What is accepted of a start from another job tells all of it, and can be made or is refused with
@@ -269,16 +274,7 @@ TEST(Fuzz, Solids) {
         R"("offsets":[{"normal":[0,0,1],"offsets":[0.5,2,4.25]}],)"
         R"("density":0.5,"weights":{"wall":3},"constraints":[{"kind":"dimension","object":"wall",)"
         R"("normal":[0,0,1]}]},"tags":{}})";
-    std::size_t made = 0;
-    fuzz(request, 11, [&](const std::string& text) {
-        const auto parsed = read_request(text);
-        if (!parsed) {
-            return false;
-        }
-        made += is_made(parsed->task) ? 1U : 0U;
-        return true;
-    });
-    EXPECT_GT(made, 1U);  // the request as it stands, and others
+    fuzz_request(request, 11);
     fuzz(kWedge, 12, [](const std::string& text) {
         return proto::parse_example(text, {}).has_value();
     });
@@ -299,16 +295,7 @@ TEST(Fuzz, ConstraintsOfSolids) {
         "VR4nGNgIAb8//8fiQIzQEwoBWXAAVECDOh8ZBEke1H4MBE0t6HwQSJEeQorAADMnWOd53M09AAA"
         "AABJRU5ErkJggg=="
         R"("}]}})";
-    std::size_t made = 0;
-    fuzz(request, 16, [&](const std::string& text) {
-        const auto parsed = read_request(text);
-        if (!parsed) {
-            return false;
-        }
-        made += is_made(parsed->task) ? 1U : 0U;
-        return true;
-    });
-    EXPECT_GT(made, 1U);  // the request as it stands, and others
+    fuzz_request(request, 16);
 }
 
 TEST(Fuzz, SolidsInBinaryGltf) {

@@ -1,6 +1,6 @@
 // Printed expressions of figures, read back and evaluated in every tope.
 
-#include "solver/continuous/expressions.h"
+#include "solver/continuous/display/expressions.h"
 #include "solver/continuous/reading.h"
 #include "solver/examples/all.h"
 #include "tests/support/formula.h"

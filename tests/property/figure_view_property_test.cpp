@@ -1,8 +1,8 @@
 // Pictures of figures beside rays of sight: what is painted last at a place is what stands first
 // there.
 
-#include "solver/continuous/figure_drawing.h"
-#include "solver/continuous/figure_view.h"
+#include "solver/continuous/display/figure_drawing.h"
+#include "solver/continuous/display/figure_view.h"
 #include "solver/continuous/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/random_solids.h"

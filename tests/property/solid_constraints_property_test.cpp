@@ -315,10 +315,6 @@ void expect_counted(
     for (Connection& connection : free) {
         connection.components = 1'000'000;
     }
-    const auto has_ground = [&](const std::vector<ObjectId>& named) {
-        const auto ground = problem.reading->example().ground;
-        return ground && std::find(named.begin(), named.end(), *ground) != named.end();
-    };
     const Skeleton skeleton(problem.arrangement);
     Connections followed(problem.reading->figures(), skeleton, free);
     Connections anew(problem.reading->figures(), skeleton, free);
@@ -335,9 +331,7 @@ void expect_counted(
             const ModelLooker looker(problem, parameters, surface);
             for (std::size_t c = 0; c < free.size(); ++c) {
                 const std::size_t pieces = looker.places().pieces(objects[c]);
-                // The ground also hangs together at the model's border, where nothing is counted.
-                EXPECT_TRUE(has_ground(objects[c]) || pieces == anew.components(c))
-                    << pieces << " pieces, " << anew.components(c) << " counted after block " << i;
+                EXPECT_EQ(pieces, anew.components(c)) << "after block " << i;
             }
         }
     }

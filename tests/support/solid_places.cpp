@@ -11,29 +11,6 @@ namespace {
 // What is nearer touches, metres.
 constexpr double kNear = 1e-6;
 
-PolygonSet set_of(
-    const continuous::Surface& surface, std::size_t object_types, const Eigen::AlignedBox3d& box
-) {
-    std::vector<SpacePolygon> polygons;
-    std::vector<ObjectId> objects;
-    for (std::size_t object = 0; object <= object_types; ++object) {
-        objects.push_back(static_cast<ObjectId>(object));
-    }
-    for (const continuous::SurfacePolygon& polygon : surface.polygons) {
-        std::vector<SpaceLoop> loops;
-        for (const std::vector<std::uint32_t>& loop : polygon.loops) {
-            SpaceLoop& corners = loops.emplace_back();
-            for (const std::uint32_t corner : loop) {
-                corners.push_back(surface.points[corner]);
-            }
-        }
-        polygons.push_back(make_space_polygon(polygon.object, std::move(loops)));
-    }
-    PolygonSet::Frame frame;
-    frame.clip = box;
-    return {std::move(polygons), std::move(objects), frame};
-}
-
 double distance_of_segments(const Point& a, const Point& b, const Point& c, const Point& d) {
     const Point u = b - a;
     const Point v = d - c;
@@ -98,10 +75,33 @@ bool touch(const SpacePolygon& one, const SpacePolygon& other) {
 
 }  // namespace
 
+PolygonSet solids_of(
+    const continuous::Surface& surface, std::size_t object_types, const Eigen::AlignedBox3d& box
+) {
+    std::vector<SpacePolygon> polygons;
+    std::vector<ObjectId> objects;
+    for (std::size_t object = 0; object <= object_types; ++object) {
+        objects.push_back(static_cast<ObjectId>(object));
+    }
+    for (const continuous::SurfacePolygon& polygon : surface.polygons) {
+        std::vector<SpaceLoop> loops;
+        for (const std::vector<std::uint32_t>& loop : polygon.loops) {
+            SpaceLoop& corners = loops.emplace_back();
+            for (const std::uint32_t corner : loop) {
+                corners.push_back(surface.points[corner]);
+            }
+        }
+        polygons.push_back(make_space_polygon(polygon.object, std::move(loops)));
+    }
+    PolygonSet::Frame frame;
+    frame.clip = box;
+    return {std::move(polygons), std::move(objects), frame};
+}
+
 SolidPlaces::SolidPlaces(
     const continuous::Surface& surface, std::size_t object_types, const Eigen::AlignedBox3d& box
 )
-    : set_(set_of(surface, object_types, box)) {}
+    : set_(solids_of(surface, object_types, box)) {}
 
 ObjectId SolidPlaces::at(const Point& point) const {
     const std::vector<int> windings = set_.windings(point);

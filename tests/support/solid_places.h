@@ -10,6 +10,12 @@
 
 namespace modelsynth::testing {
 
+// The polygons of a surface as a set whose solids are object types.
+// `box`: what the model may fill.
+[[nodiscard]] PolygonSet solids_of(
+    const continuous::Surface& surface, std::size_t object_types, const Eigen::AlignedBox3d& box
+);
+
 // A model of solids, asked what is where: by its polygons alone, with none of the solver's labels.
 class SolidPlaces {
   public:

@@ -1,6 +1,7 @@
 #include "tests/support/surface_checker.h"
 
 #include "tests/support/figure_sampler.h"
+#include "tests/support/solid_places.h"
 #include "tests/support/surface_laws.h"
 
 #include <algorithm>
@@ -102,28 +103,6 @@ std::vector<Point> normals_of(const Example& example) {
     return normals;
 }
 
-// Solids are object types.
-PolygonSet solids_of(const Example& example, const Surface& surface, Eigen::AlignedBox3d box) {
-    std::vector<SpacePolygon> polygons;
-    std::vector<ObjectId> objects;
-    for (std::size_t object = 0; object <= example.objects.size(); ++object) {
-        objects.push_back(static_cast<ObjectId>(object));
-    }
-    for (const continuous::SurfacePolygon& polygon : surface.polygons) {
-        std::vector<SpaceLoop> loops;
-        for (const std::vector<std::uint32_t>& loop : polygon.loops) {
-            SpaceLoop& corners = loops.emplace_back();
-            for (const std::uint32_t corner : loop) {
-                corners.push_back(surface.points[corner]);
-            }
-        }
-        polygons.push_back(make_space_polygon(polygon.object, std::move(loops)));
-    }
-    PolygonSet::Frame frame;
-    frame.clip = box;
-    return {std::move(polygons), std::move(objects), frame};
-}
-
 std::string text(const Point& point) {
     char buffer[100];
     std::snprintf(buffer, sizeof buffer, "(%.6g, %.6g, %.6g)", point.x(), point.y(), point.z());
@@ -187,7 +166,7 @@ ModelFaults SurfaceChecker::find_faults(
     if (!faults.is_empty()) {
         return faults.take();
     }
-    const PolygonSet solids = solids_of(example_, surface, box);
+    const PolygonSet solids = solids_of(surface, example_.objects.size(), box);
     find_false_polygons(example_, cells_, solids, faults);
     find_open_borders(surface, solids.polygons(), faults);
     find_corners_on_sides(surface, faults);
@@ -221,7 +200,7 @@ ModelFaults SurfaceChecker::find_faults(
 
 ModelFaults SurfaceChecker::find_faults(const Scene& scene, const Surface& surface) const {
     FaultList faults;
-    const PolygonSet solids = solids_of(example_, surface, {});
+    const PolygonSet solids = solids_of(surface, example_.objects.size(), {});
     check_scene(example_, scene, solids.polygons(), faults);
     return faults.take();
 }

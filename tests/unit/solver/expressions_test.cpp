@@ -1,6 +1,6 @@
 // Boolean expressions of figures: short ones where that is known, exact ones elsewhere.
 
-#include "solver/continuous/expressions.h"
+#include "solver/continuous/display/expressions.h"
 
 #include "solver/continuous/reading.h"
 #include "solver/examples/solids/shapes.h"

@@ -1,8 +1,8 @@
 // Pictures of figures: which edges are drawn, and files that any reader can show.
 
-#include "solver/continuous/figure_drawing.h"
+#include "solver/continuous/display/figure_drawing.h"
 
-#include "solver/continuous/figure_view.h"
+#include "solver/continuous/display/figure_view.h"
 #include "solver/continuous/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"

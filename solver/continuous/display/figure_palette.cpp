@@ -1,4 +1,4 @@
-#include "solver/continuous/figure_palette.h"
+#include "solver/continuous/display/figure_palette.h"
 
 #include <algorithm>
 #include <cmath>

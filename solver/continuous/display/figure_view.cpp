@@ -1,4 +1,4 @@
-#include "solver/continuous/figure_view.h"
+#include "solver/continuous/display/figure_view.h"
 
 #include <Eigen/Geometry>
 

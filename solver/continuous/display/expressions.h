@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/boolean_expression.h"
+#include "solver/continuous/display/boolean_expression.h"
 #include "solver/continuous/figures.h"
 #include "solver/continuous/topes.h"
 

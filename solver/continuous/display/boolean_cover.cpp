@@ -1,4 +1,4 @@
-#include "solver/continuous/boolean_cover.h"
+#include "solver/continuous/display/boolean_cover.h"
 
 #include "solver/core/result.h"
 

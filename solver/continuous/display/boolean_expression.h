@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/boolean_cover.h"
+#include "solver/continuous/display/boolean_cover.h"
 
 #include <cstddef>
 #include <cstdint>

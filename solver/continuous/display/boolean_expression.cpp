@@ -1,4 +1,4 @@
-#include "solver/continuous/boolean_expression.h"
+#include "solver/continuous/display/boolean_expression.h"
 
 #include "solver/core/result.h"
 

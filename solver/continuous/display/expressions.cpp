@@ -1,4 +1,4 @@
-#include "solver/continuous/expressions.h"
+#include "solver/continuous/display/expressions.h"
 
 #include <algorithm>
 #include <utility>

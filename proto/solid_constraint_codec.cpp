@@ -1,0 +1,174 @@
+#include "proto/solid_constraint_codec.h"
+
+#include "proto/continuous_codec.h"
+#include "proto/region_codec.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace modelsynth::proto {
+
+namespace {
+
+using continuous::ConnectedRule;
+using continuous::Constraint;
+using continuous::DimensionRule;
+using continuous::FixedRule;
+using continuous::ForbiddenRule;
+using continuous::MetreBox;
+using continuous::ProbabilityRule;
+using continuous::Region;
+using continuous::Rule;
+
+std::optional<MetreBox> read_metre_box(const Value& value) {
+    ObjectReader reader(value);
+    const auto min_value = reader.required("min");
+    const auto max_value = reader.required("max");
+    reader.finish();
+    const auto min = min_value ? read_point(*min_value, kMetresMax) : std::nullopt;
+    const auto max = max_value ? read_point(*max_value, kMetresMax) : std::nullopt;
+    if (!min || !max) {
+        return std::nullopt;
+    }
+    if ((min->array() >= max->array()).any()) {
+        value.fault("max must be beyond min along every axis");
+    }
+    return MetreBox{{min->x(), min->y(), min->z()}, {max->x(), max->y(), max->z()}};
+}
+
+Region read_metre_region(ObjectReader& reader, const RequestLimits& limits) {
+    Region region;
+    if (const auto box = reader.optional("box")) {
+        region.box = read_metre_box(*box);
+    }
+    if (const auto mask = reader.optional("mask")) {
+        region.mask = read_mask(*mask, limits);
+    }
+    if (const auto voxels = reader.optional("voxels")) {
+        region.voxels = read_voxels(*voxels, limits);
+    }
+    return region;
+}
+
+DimensionRule read_dimension(ObjectReader& reader) {
+    DimensionRule rule;
+    if (const auto normal = reader.required("normal")) {
+        rule.normal = read_normal(*normal).value_or(rule.normal);
+    }
+    if (const auto spacings = reader.optional("spacings")) {
+        rule.spacings =
+            static_cast<std::int32_t>(spacings->integer(1, continuous::kCellsAlongMax).value_or(1));
+    }
+    return rule;
+}
+
+Rule read_rule(std::size_t kind, ObjectReader& reader) {
+    switch (kind) {
+        case 0:
+            return read_dimension(reader);
+        case 1: {
+            ConnectedRule rule;
+            if (const auto components = reader.optional("components")) {
+                rule.components =
+                    static_cast<std::uint32_t>(components->integer(1, 1000).value_or(1));
+            }
+            return rule;
+        }
+        case 2:
+            return FixedRule{};
+        case 3:
+            return ForbiddenRule{};
+        default: {
+            ProbabilityRule rule;
+            if (const auto weight = reader.required("weight")) {
+                rule.weight = weight->number(0, 1e6).value_or(1);
+            }
+            return rule;
+        }
+    }
+}
+
+// One that cannot be read keeps its place in the list, so that faults of the others are told at
+// theirs, as a rule that says nothing.
+Constraint read_constraint(const Value& value, const RequestLimits& limits) {
+    const Constraint nothing = {ForbiddenRule{}};
+    ObjectReader reader(value);
+    const auto kind_value = reader.required("kind");
+    const auto kind = kind_value ? kind_value->one_of(continuous::kRuleNames) : std::nullopt;
+    if (!kind) {
+        return nothing;
+    }
+    Constraint constraint;
+    constraint.rule = read_rule(*kind, reader);
+    if (std::holds_alternative<DimensionRule>(constraint.rule)) {
+        if (const auto object = reader.required("object")) {
+            constraint.objects = {object->string(limits.name_characters_max).value_or("")};
+        }
+    } else if (const auto objects = reader.required("objects")) {
+        constraint.objects =
+            objects->strings(1, continuous::kObjectTypesMax, limits.name_characters_max)
+                .value_or(std::vector<std::string>());
+    }
+    if (continuous::has_region(constraint.rule)) {
+        constraint.region = read_metre_region(reader, limits);
+    }
+    reader.finish();
+    return constraint.objects.empty() ? nothing : constraint;
+}
+
+OrderedJson write_constraint(const Constraint& constraint) {
+    OrderedJson written = {{"kind", continuous::kRuleNames[constraint.rule.index()]}};
+    if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
+        written["object"] = constraint.objects.front();
+        written["normal"] = dimension->normal;
+        written["spacings"] = dimension->spacings;
+        return written;
+    }
+    written["objects"] = constraint.objects;
+    if (const auto* connected = std::get_if<ConnectedRule>(&constraint.rule)) {
+        written["components"] = connected->components;
+    } else if (const auto* probability = std::get_if<ProbabilityRule>(&constraint.rule)) {
+        written["weight"] = probability->weight;
+    }
+    if (const auto& box = constraint.region.box) {
+        written["box"] = {{"min", box->min}, {"max", box->max}};
+    }
+    write_fields(constraint.region.mask, constraint.region.voxels, written);
+    return written;
+}
+
+}  // namespace
+
+std::vector<Constraint> read_solid_constraints(const Value& value, const RequestLimits& limits) {
+    std::vector<Constraint> constraints;
+    const auto values = constraint_values(value, limits);
+    if (!values) {
+        return constraints;
+    }
+    std::size_t member_rules = 0;
+    for (const Value& one : *values) {
+        const Constraint& constraint = constraints.emplace_back(read_constraint(one, limits));
+        if (std::holds_alternative<ConnectedRule>(constraint.rule) &&
+            ++member_rules == limits.member_rules_max + 1) {
+            value.fault(
+                "has more than " + std::to_string(limits.member_rules_max) +
+                    " constraints of the kind connected; the limit is member_rules_max",
+                true
+            );
+        }
+    }
+    return constraints;
+}
+
+OrderedJson write_constraints(const std::vector<Constraint>& constraints) {
+    OrderedJson written = OrderedJson::array();
+    for (const Constraint& constraint : constraints) {
+        written.push_back(write_constraint(constraint));
+    }
+    return written;
+}
+
+}  // namespace modelsynth::proto

@@ -1,0 +1,20 @@
+#pragma once
+
+// Private to proto's sources.
+
+#include "proto/json.h"
+#include "proto/limits.h"
+#include "solver/continuous/constraints.h"
+
+#include <vector>
+
+namespace modelsynth::proto {
+
+// The list of constraints of a continuous synthesis; what is wrong goes to the value's faults.
+[[nodiscard]] std::vector<continuous::Constraint> read_solid_constraints(
+    const Value& value, const RequestLimits& limits
+);
+
+[[nodiscard]] OrderedJson write_constraints(const std::vector<continuous::Constraint>& constraints);
+
+}  // namespace modelsynth::proto
