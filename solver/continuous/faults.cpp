@@ -1,6 +1,9 @@
 #include "solver/continuous/faults.h"
 
+#include "solver/continuous/problem.h"
 #include "solver/continuous/reading.h"
+#include "solver/continuous/spacing.h"
+#include "solver/continuous/symmetries.h"
 
 #include <Eigen/Geometry>
 
@@ -42,13 +45,14 @@ class FaultFinder {
         : reading_(reading), parameters_(parameters) {}
 
     std::vector<Fault> find() && {
+        check_size();
+        is_size_good_ = faults_.empty();
         for (const auto& [name, weight] : parameters_.weights) {
             check_object("/weights", name);
         }
         for (std::size_t i = 0; i < parameters_.constraints->size(); ++i) {
             check_constraint("/constraints/" + std::to_string(i), (*parameters_.constraints)[i]);
         }
-        check_size();
         return std::move(faults_);
     }
 
@@ -72,11 +76,41 @@ class FaultFinder {
             }
             return;
         }
+        if (const auto* symmetry = std::get_if<SymmetryRule>(&constraint.rule)) {
+            check_symmetry(pointer, *symmetry);
+            return;
+        }
         for (std::size_t i = 0; i < constraint.objects.size(); ++i) {
             const std::string& name = constraint.objects[i];
             if (!may_name_empty(constraint.rule) || name != kEmptyName) {
                 check_object(pointer + "/objects/" + std::to_string(i), name);
             }
+        }
+    }
+
+    void check_symmetry(const std::string& pointer, const SymmetryRule& rule) {
+        const std::size_t before = faults_.size();
+        for (const auto& [object, image] : rule.mirror) {
+            for (const std::string& name : {object, image}) {
+                if (name != kEmptyName) {
+                    check_object(pointer + "/mirror/" + pointer_part(object), name);
+                }
+            }
+        }
+        if (faults_.size() > before || !is_size_good_) {
+            return;
+        }
+        const std::vector<double> free(reading_.topes().family_count(), 0);
+        const Spacings spacings = solve_spacings(reading_.figures(), *parameters_.spacing, free);
+        const auto fault = find_symmetry_fault(
+            reading_.example(),
+            reading_.topes(),
+            rule,
+            planes_of(reading_, parameters_, spacings),
+            *parameters_.size
+        );
+        if (fault) {
+            faults_.push_back({pointer + fault->field, fault->detail});
         }
     }
 
@@ -105,6 +139,7 @@ class FaultFinder {
     const ExampleReading& reading_;
     const Parameters& parameters_;
     std::vector<Fault> faults_;
+    bool is_size_good_ = false;  // else there may be too many planes to look at
 };
 
 }  // namespace

@@ -72,7 +72,39 @@ std::vector<Connection> connections_of(
     return connections;
 }
 
+std::unique_ptr<const Symmetries> symmetries_of(
+    const ExampleReading& reading, const Parameters& parameters, const Arrangement& arrangement
+) {
+    std::vector<SymmetryRule> rules;
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (const auto* rule = std::get_if<SymmetryRule>(&constraint.rule)) {
+            rules.push_back(*rule);
+        }
+    }
+    return rules.empty() ? nullptr
+                         : std::make_unique<const Symmetries>(
+                               reading.example(),
+                               reading.figures(),
+                               reading.relations(),
+                               arrangement,
+                               rules,
+                               *parameters.size
+                           );
+}
+
 }  // namespace
+
+std::vector<PlaneOffsets> planes_of(
+    const ExampleReading& reading, const Parameters& parameters, const Spacings& spacings
+) {
+    const Topes& topes = reading.topes();
+    const Bounds box = frame_of(parameters, reading.example().ground.has_value()).box;
+    std::vector<PlaneOffsets> planes;
+    for (std::size_t family = 0; family < topes.family_count(); ++family) {
+        planes.push_back(planes_through(topes.normals()[family], spacings.of_family[family], box));
+    }
+    return planes;
+}
 
 Result<Problem> make_problem(
     std::shared_ptr<const ExampleReading> reading, const Parameters& parameters
@@ -82,12 +114,7 @@ Result<Problem> make_problem(
     const std::vector<double> fixed(topes.family_count(), 0);
     Spacings spacings = solve_spacings(figures, *parameters.spacing, fixed);
     const Arrangement::Frame frame = frame_of(parameters, reading->example().ground.has_value());
-    std::vector<PlaneOffsets> planes;
-    for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        planes.push_back(
-            planes_through(topes.normals()[family], spacings.of_family[family], frame.box)
-        );
-    }
+    const std::vector<PlaneOffsets> planes = planes_of(*reading, parameters, spacings);
     auto arrangement = Arrangement::make(topes, planes, frame, kVerticesMax);
     if (!arrangement) {
         return tl::unexpected(std::move(arrangement.error()));
@@ -98,7 +125,18 @@ Result<Problem> make_problem(
     }
     std::vector<Label> plain = plain_labels(*reading, *arrangement);
     SiteDomains domains = make_domains(*reading, parameters, *arrangement, spacings, plain);
-    auto initial = find_initial_labels(*reading, *arrangement, domains, *weights, std::move(plain));
+    auto symmetries = symmetries_of(*reading, parameters, *arrangement);
+    if (symmetries) {
+        symmetries->narrow(domains);
+    }
+    auto initial = find_initial_labels(
+        symmetries ? symmetries->relations() : reading->relations(),
+        *arrangement,
+        symmetries.get(),
+        domains,
+        *weights,
+        std::move(plain)
+    );
     if (!initial) {
         return tl::unexpected(std::move(initial.error()));
     }
@@ -112,7 +150,8 @@ Result<Problem> make_problem(
         std::move(*weights),
         std::move(*initial),
         std::move(homeless),
-        std::move(connections)};
+        std::move(connections),
+        std::move(symmetries)};
 }
 
 }  // namespace modelsynth::continuous
