@@ -4,7 +4,12 @@
 #include "proto/constraint_codec.h"
 #include "proto/region_codec.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace modelsynth::proto {
 
@@ -24,6 +29,7 @@ using continuous::Rule;
 using continuous::SymmetryRule;
 
 constexpr double kMetresMax = 1e5;
+constexpr double kOffsetMax = 2e5;  // the corners of the largest model are nearer
 
 std::optional<std::array<double, 3>> read_size(const Value& value) {
     const auto values = value.array(3, 3);
@@ -86,16 +92,106 @@ Region read_metre_region(ObjectReader& reader, const RequestLimits& limits) {
     return region;
 }
 
+std::optional<std::array<double, 3>> read_normal(const Value& value) {
+    const auto direction = read_point(value, kMetresMax);
+    if (!direction) {
+        return std::nullopt;
+    }
+    if (direction->norm() < 1e-9) {
+        value.fault("must have a length");
+    }
+    return std::array{direction->x(), direction->y(), direction->z()};
+}
+
+// What is faulty has length 0, so that nothing more is said of it.
+constexpr std::array<double, 3> kNoNormal = {0, 0, 0};
+
+// What stands in a list keeps its place in it, faults or not: pointers count on that.
+void read_spacing_list(const Value& value, Parameters& parameters) {
+    const auto entries = value.array(1, continuous::kFamiliesMax + 1);
+    for (std::size_t i = 0; entries && i < entries->size(); ++i) {
+        ObjectReader reader((*entries)[i]);
+        const auto normal = reader.optional("normal");
+        const auto spacing_value = reader.required("spacing");
+        reader.finish();
+        const auto spacing =
+            spacing_value ? spacing_value->number_above(0, kMetresMax) : std::nullopt;
+        const bool is_last = i + 1 == entries->size();
+        if (normal) {
+            parameters.spacings.push_back(
+                {read_normal(*normal).value_or(kNoNormal), spacing.value_or(kMetresMax)}
+            );
+        } else if (is_last) {
+            parameters.spacing = spacing;
+        } else {
+            (*entries)[i].fault(
+                "has no normal; only the last one may lack it, which is for all other planes"
+            );
+            parameters.spacings.push_back({kNoNormal, kMetresMax});
+        }
+    }
+}
+
+void read_spacing(const Value& value, Parameters& parameters) {
+    if (value.json().is_array()) {
+        read_spacing_list(value, parameters);
+    } else if (value.json().is_number()) {
+        parameters.spacing = value.number_above(0, kMetresMax);
+    } else {
+        value.fault("must be a number or a list of spacings");
+    }
+}
+
+OrderedJson write_spacing(const Parameters& parameters) {
+    if (parameters.spacings.empty()) {
+        return *parameters.spacing;
+    }
+    OrderedJson list = OrderedJson::array();
+    for (const continuous::FamilySpacing& family : parameters.spacings) {
+        list.push_back({{"normal", family.normal}, {"spacing", family.spacing}});
+    }
+    list.push_back({{"spacing", *parameters.spacing}});
+    return list;
+}
+
+continuous::FamilyOffsets read_family_offsets(const Value& value) {
+    continuous::FamilyOffsets family = {kNoNormal, {}};
+    ObjectReader reader(value);
+    if (const auto normal = reader.required("normal")) {
+        family.normal = read_normal(*normal).value_or(kNoNormal);
+    }
+    if (const auto offsets = reader.required("offsets")) {
+        const auto values = offsets->array(1, continuous::kOffsetsMax);
+        for (const Value& one : values.value_or(std::vector<Value>())) {
+            family.offsets.push_back(one.number(-kOffsetMax, kOffsetMax).value_or(0));
+        }
+    }
+    reader.finish();
+    return family;
+}
+
+std::vector<continuous::FamilyOffsets> read_offsets(const Value& value) {
+    std::vector<continuous::FamilyOffsets> families;
+    if (const auto values = value.array(0, continuous::kFamiliesMax)) {
+        for (const Value& one : *values) {
+            families.push_back(read_family_offsets(one));
+        }
+    }
+    return families;
+}
+
+OrderedJson write_offsets(const Parameters& parameters) {
+    OrderedJson list = OrderedJson::array();
+    for (const continuous::FamilyOffsets& family : parameters.offsets) {
+        list.push_back({{"normal", family.normal}, {"offsets", family.offsets}});
+    }
+    return list;
+}
+
 DimensionRule read_dimension(ObjectReader& reader) {
     DimensionRule rule;
     if (const auto normal = reader.required("normal")) {
-        const auto direction = read_point(*normal, kMetresMax);
-        if (direction && direction->norm() < 1e-9) {
-            normal->fault("must have a length");
-        }
-        if (direction) {
-            rule.normal = {direction->x(), direction->y(), direction->z()};
-        }
+        rule.normal = read_normal(*normal).value_or(rule.normal);
     }
     if (const auto spacings = reader.optional("spacings")) {
         rule.spacings =
@@ -165,12 +261,15 @@ Rule read_rule(
     }
 }
 
-std::optional<Constraint> read_constraint(const Value& value, const RequestLimits& limits) {
+// One that cannot be read keeps its place in the list, so that faults of the others are told at
+// theirs, as a rule that says nothing.
+Constraint read_constraint(const Value& value, const RequestLimits& limits) {
+    const Constraint nothing = {ForbiddenRule{}};
     ObjectReader reader(value);
     const auto kind_value = reader.required("kind");
     const auto kind = kind_value ? kind_value->one_of(continuous::kRuleNames) : std::nullopt;
     if (!kind) {
-        return std::nullopt;
+        return nothing;
     }
     Constraint constraint;
     constraint.rule = read_rule(*kind, reader, value, limits);
@@ -182,23 +281,46 @@ std::optional<Constraint> read_constraint(const Value& value, const RequestLimit
         constraint.objects.clear();
     } else if (const auto objects = reader.required("objects")) {
         constraint.objects =
-            objects->strings(0, continuous::kObjectTypesMax, limits.name_characters_max)
+            objects->strings(1, continuous::kObjectTypesMax, limits.name_characters_max)
                 .value_or(std::vector<std::string>());
     }
     if (continuous::has_region(constraint.rule)) {
         constraint.region = read_metre_region(reader, limits);
     }
     reader.finish();
-    return constraint;
+    const bool names_none = constraint.objects.empty() &&
+                            !std::holds_alternative<SymmetryRule>(constraint.rule);
+    return names_none ? nothing : constraint;
 }
 
 std::vector<Constraint> read_solid_constraints(const Value& value, const RequestLimits& limits) {
     std::vector<Constraint> constraints;
-    if (const auto values = value.array(0, limits.constraints_max)) {
-        for (const Value& one : *values) {
-            if (auto constraint = read_constraint(one, limits)) {
-                constraints.push_back(std::move(*constraint));
-            }
+    const auto values = value.array(0, limits.constraints_max);
+    if (!values) {
+        return constraints;
+    }
+    // Masks are counted before any is unpacked.
+    const auto has_mask = [](const Value& one) {
+        return one.json().is_object() && one.json().contains("mask");
+    };
+    if (std::count_if(values->begin(), values->end(), has_mask) >
+        static_cast<std::ptrdiff_t>(limits.masks_max)) {
+        value.fault(
+            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
+            true
+        );
+        return constraints;
+    }
+    std::size_t member_rules = 0;
+    for (const Value& one : *values) {
+        const Constraint& constraint = constraints.emplace_back(read_constraint(one, limits));
+        if (std::holds_alternative<ConnectedRule>(constraint.rule) &&
+            ++member_rules == limits.member_rules_max + 1) {
+            value.fault(
+                "has more than " + std::to_string(limits.member_rules_max) +
+                    " constraints of the kind connected; the limit is member_rules_max",
+                true
+            );
         }
     }
     return constraints;
@@ -282,7 +404,10 @@ Parameters read_continuous_parameters(const Value& value, const RequestLimits& l
         parameters.size = read_size(*size);
     }
     if (const auto spacing = reader.optional("spacing")) {
-        parameters.spacing = spacing->number_above(0, kMetresMax);
+        read_spacing(*spacing, parameters);
+    }
+    if (const auto offsets = reader.optional("offsets")) {
+        parameters.offsets = read_offsets(*offsets);
     }
     if (const auto blocks = reader.optional("blocks")) {
         parameters.blocks.emplace(read_blocks(*blocks, limits));
@@ -311,7 +436,8 @@ OrderedJson write_parameters(const Parameters& parameters) {
     }
     return {
         {"size", *parameters.size},
-        {"spacing", *parameters.spacing},
+        {"spacing", write_spacing(parameters)},
+        {"offsets", write_offsets(parameters)},
         {"blocks", write_blocks(*parameters.blocks)},
         {"density", *parameters.density},
         {"weights", std::move(weights)},

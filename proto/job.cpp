@@ -167,6 +167,9 @@ std::string to_json(const JobResult& result) {
     if (result.stats.polygons) {
         stats["polygons"] = *result.stats.polygons;
     }
+    if (!result.stats.warnings.empty()) {
+        stats["warnings"] = result.stats.warnings;
+    }
     if (!result.stats.candidates.empty()) {
         OrderedJson candidates = OrderedJson::array();
         for (const auto& value : result.stats.candidates) {

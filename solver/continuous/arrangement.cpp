@@ -23,6 +23,7 @@ constexpr double kOffPlane = 1e-8;
 using Key = std::uint64_t;
 constexpr int kFamilyBits = 5;
 constexpr int kPlaneBits = 16;
+static_assert(kPlanesMax < std::size_t{1} << kPlaneBits);
 
 // A line passes through a vertex.
 struct Meeting {
@@ -333,9 +334,11 @@ Result<Arrangement> Arrangement::make(
     std::size_t vertices_max
 ) {
     for (const PlaneOffsets& offsets : planes) {
-        if (offsets.size() >> kPlaneBits != 0) {
+        if (offsets.size() > kPlanesMax) {
             return tl::unexpected(Error{
-                ErrorCode::kTooLarge, "more than 65535 planes of one direction", {}});
+                ErrorCode::kTooLarge,
+                "more than " + std::to_string(kPlanesMax) + " planes of one direction",
+                {}});
         }
     }
     Builder builder(topes, planes, frame, vertices_max);

@@ -14,6 +14,9 @@ namespace modelsynth::continuous {
 // The planes of one family that cut a box, by their offsets, rising.
 using PlaneOffsets = std::vector<double>;
 
+// Of one family.
+inline constexpr std::size_t kPlanesMax = 65535;
+
 // An edge of the arrangement seen from one of its ends.
 struct ArrangementEdge {
     Heading heading = 0;

@@ -60,13 +60,11 @@ void Connections::enter(std::span<const Site> part) {
 }
 
 bool Connections::accepts(std::span<const Label> model) {
-    std::vector<std::uint32_t> after;
+    const std::vector<std::uint32_t> after = put_all(model);
     bool accepted = true;
     for (std::size_t i = 0; i < states_.size(); ++i) {
-        State& state = states_[i];
-        put(state, connections_[i], model);
-        after.push_back(state.components - state.components_before + count(state));
-        accepted = accepted && after[i] <= std::max(state.components, connections_[i].components);
+        accepted =
+            accepted && after[i] <= std::max(states_[i].components, connections_[i].components);
     }
     for (std::size_t i = 0; i < states_.size(); ++i) {
         State& state = states_[i];
@@ -81,6 +79,13 @@ bool Connections::accepts(std::span<const Label> model) {
     return accepted;
 }
 
+void Connections::take_back(std::span<const Label> model) {
+    const std::vector<std::uint32_t> after = put_all(model);
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        states_[i].components = after[i];
+    }
+}
+
 bool Connections::is_all_inside(std::size_t connection) const {
     const State& state = states_[connection];
     const auto inside = static_cast<std::size_t>(
@@ -93,6 +98,17 @@ void Connections::put(State& state, const Connection& connection, std::span<cons
     for (const Site site : inside_) {
         state.members.set(site, membership(connection, model, site));
     }
+}
+
+// The components there are with it, by connection.
+std::vector<std::uint32_t> Connections::put_all(std::span<const Label> model) {
+    std::vector<std::uint32_t> after;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        State& state = states_[i];
+        put(state, connections_[i], model);
+        after.push_back(state.components - state.components_before + count(state));
+    }
+    return after;
 }
 
 Membership Connections::membership(

@@ -42,6 +42,10 @@ class Connections final : public PartJudge {
     // stand if it is so; if not, what stood before enter() does.
     [[nodiscard]] bool accepts(std::span<const Label> model) override;
 
+    // They have labels again that they had before: these stand, in however many components. What
+    // came since then may have fewer, where there were more than there may be.
+    void take_back(std::span<const Label> model);
+
     // Of the model that stands.
     [[nodiscard]] std::uint32_t components(std::size_t connection) const {
         return states_[connection].components;
@@ -60,6 +64,7 @@ class Connections final : public PartJudge {
     };
 
     void put(State& state, const Connection& connection, std::span<const Label> model);
+    [[nodiscard]] std::vector<std::uint32_t> put_all(std::span<const Label> model);
     [[nodiscard]] std::uint32_t count(const State& state);
     [[nodiscard]] Membership membership(
         const Connection& connection, std::span<const Label> model, Site site

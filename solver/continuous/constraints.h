@@ -20,7 +20,8 @@ struct MetreBox {
     friend bool operator==(const MetreBox&, const MetreBox&) = default;
 };
 
-// Where a constraint holds: in any of these, or everywhere when none is given.
+// Where a constraint holds: in any of these, or everywhere when none is given. Below y = 0 it says
+// nothing of the ground, and nothing that has to be there; what it keeps out, also from there.
 struct Region {
     std::optional<MetreBox> box = std::nullopt;
     std::optional<Mask> mask = std::nullopt;  // through the whole height

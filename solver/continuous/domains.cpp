@@ -4,7 +4,6 @@
 #include "solver/core/weight_tables.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -71,12 +70,12 @@ class DomainMaker {
         const ExampleReading& reading,
         const Parameters& parameters,
         const Arrangement& arrangement,
-        const Spacings& spacings,
+        const ModelPlanes& planes,
         std::span<const Label> plain
     )
         : figures_(reading.figures()),
           arrangement_(arrangement),
-          spacings_(spacings),
+          planes_(planes),
           plain_(plain),
           dimensions_(dimension_filters(reading, parameters)) {}
 
@@ -119,8 +118,7 @@ class DomainMaker {
             return Layer::kEnd;
         }
         const std::size_t plane = arrangement_.plane_through(site, family);
-        const double offset = arrangement_.planes(family)[plane];
-        const auto number = std::llround(offset / spacings_.of_family[family]);
+        const auto number = planes_.first_number[family] + static_cast<std::int64_t>(plane);
         return number % dimension.spacings == 0 ? Layer::kEnd : Layer::kBetween;
     }
 
@@ -150,7 +148,7 @@ class DomainMaker {
 
     const Figures& figures_;
     const Arrangement& arrangement_;
-    const Spacings& spacings_;
+    const ModelPlanes& planes_;
     std::span<const Label> plain_;
     std::vector<DimensionFilter> dimensions_;
 };
@@ -201,7 +199,7 @@ SiteDomains make_domains(
     const ExampleReading& reading,
     const Parameters& parameters,
     const Arrangement& arrangement,
-    const Spacings& spacings,
+    const ModelPlanes& planes,
     std::span<const Label> plain
 ) {
     const std::vector<double> weights = weights_of_figures(reading, parameters);
@@ -211,7 +209,7 @@ SiteDomains make_domains(
             weighted.insert(static_cast<Label>(l));
         }
     }
-    DomainMaker maker(reading, parameters, arrangement, spacings, plain);
+    DomainMaker maker(reading, parameters, arrangement, planes, plain);
     SiteDomains domains = maker.make(weighted);
     narrow_to_regions(reading, parameters, arrangement, domains);
     return domains;

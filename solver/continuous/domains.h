@@ -1,9 +1,9 @@
 #pragma once
 
 #include "solver/continuous/arrangement.h"
+#include "solver/continuous/model_planes.h"
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
-#include "solver/continuous/spacing.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
 
@@ -19,7 +19,7 @@ namespace modelsynth::continuous {
     const ExampleReading& reading,
     const Parameters& parameters,
     const Arrangement& arrangement,
-    const Spacings& spacings,
+    const ModelPlanes& planes,
     std::span<const Label> plain
 );
 

@@ -1,8 +1,7 @@
 #include "solver/continuous/faults.h"
 
-#include "solver/continuous/problem.h"
+#include "solver/continuous/model_planes.h"
 #include "solver/continuous/reading.h"
-#include "solver/continuous/spacing.h"
 #include "solver/continuous/symmetries.h"
 
 #include <Eigen/Geometry>
@@ -17,26 +16,64 @@ namespace {
 // So many places where three planes meet, some of them the same, are looked at.
 constexpr double kMeetingsMax = 32e6;
 
+// So many lines are walked along, some seconds' worth.
+constexpr double kLinesMax = 256e6;
+
+Point point_of(const std::array<double, 3>& numbers) {
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
 std::string number(double value) {
     std::string text = std::to_string(value);
     text.erase(text.find_last_not_of('0') + 1);
     return text.ends_with('.') ? text.substr(0, text.size() - 1) : text;
 }
 
-// How often three planes meet in the model, counted by volumes.
-double meetings(const ExampleReading& reading, const Parameters& parameters) {
+// How many planes of each family there are, counted by lengths; each is at least one.
+std::vector<double> count_planes(const ExampleReading& reading, const Parameters& parameters) {
+    const std::span<const Point> normals = reading.topes().normals();
+    const Bounds box = model_box(reading, parameters);
+    const Spacings spacings = spacings_of(reading, parameters);
+    std::vector<double> counts;
+    for (std::size_t family = 0; family < normals.size(); ++family) {
+        const Reach reach = reach_along(normals[family], box);
+        const double spacing = spacings.of_family[family];
+        counts.push_back(spacing > 0 ? std::max(1.0, (reach.high - reach.low) / spacing) : 1);
+    }
+    for (const FamilyOffsets& listed : parameters.offsets) {
+        const auto family = *reading.topes().find_family(point_of(listed.normal));
+        counts[family] = std::max(counts[family], static_cast<double>(listed.offsets.size()));
+    }
+    return counts;
+}
+
+// In how many lines two planes meet, were the model a cube.
+double lines_of(std::span<const double> counts) {
+    double sum = 0;
+    for (std::size_t a = 0; a < counts.size(); ++a) {
+        for (std::size_t b = a + 1; b < counts.size(); ++b) {
+            sum += counts[a] * counts[b];
+        }
+    }
+    return sum;
+}
+
+// How often three planes meet in the model, counted by volumes; `steps` tells how far those of each
+// family lie apart on average.
+double meetings(
+    const ExampleReading& reading, const Parameters& parameters, std::span<const double> steps
+) {
     const std::span<const Point> n = reading.topes().normals();
     const std::array<double, 3>& size = *parameters.size;
-    const double s = *parameters.spacing;
     double sum = 0;
     for (std::size_t a = 0; a < n.size(); ++a) {
         for (std::size_t b = a + 1; b < n.size(); ++b) {
             for (std::size_t c = b + 1; c < n.size(); ++c) {
-                sum += std::abs(n[a].dot(n[b].cross(n[c])));
+                sum += std::abs(n[a].dot(n[b].cross(n[c]))) / (steps[a] * steps[b] * steps[c]);
             }
         }
     }
-    return sum * size[0] * size[1] * size[2] / (s * s * s);
+    return sum * size[0] * size[1] * size[2];
 }
 
 class FaultFinder {
@@ -45,7 +82,9 @@ class FaultFinder {
         : reading_(reading), parameters_(parameters) {}
 
     std::vector<Fault> find() && {
-        check_size();
+        if (check_families()) {
+            check_size();
+        }
         is_size_good_ = faults_.empty();
         for (const auto& [name, weight] : parameters_.weights) {
             check_object("/weights", name);
@@ -65,9 +104,10 @@ class FaultFinder {
 
     void check_constraint(const std::string& pointer, const Constraint& constraint) {
         if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
-            check_object(pointer + "/object", constraint.objects.front());
-            const auto& [x, y, z] = dimension->normal;
-            const Point normal(x, y, z);
+            if (!constraint.objects.empty()) {  // else that is a fault of its own
+                check_object(pointer + "/object", constraint.objects.front());
+            }
+            const Point normal = point_of(dimension->normal);
             const bool has_length = normal.norm() > 1e-9;  // else that is a fault of its own
             if (has_length && !reading_.topes().find_family(normal)) {
                 faults_.push_back(
@@ -100,13 +140,11 @@ class FaultFinder {
         if (faults_.size() > before || !is_size_good_) {
             return;
         }
-        const std::vector<double> free(reading_.topes().family_count(), 0);
-        const Spacings spacings = solve_spacings(reading_.figures(), *parameters_.spacing, free);
         const auto fault = find_symmetry_fault(
             reading_.example(),
             reading_.topes(),
             rule,
-            planes_of(reading_, parameters_, spacings),
+            make_planes(reading_, parameters_).offsets,
             *parameters_.size
         );
         if (fault) {
@@ -114,10 +152,51 @@ class FaultFinder {
         }
     }
 
+    // False where the planes of the model cannot be said.
+    bool check_families() {
+        bool is_sound = true;
+        std::vector<std::string> place_of(reading_.topes().family_count());
+        for (std::size_t i = 0; i < parameters_.spacings.size(); ++i) {
+            const std::string pointer = "/spacing/" + std::to_string(i);
+            is_sound &= check_family(pointer, parameters_.spacings[i].normal, place_of);
+        }
+        for (std::size_t i = 0; i < parameters_.offsets.size(); ++i) {
+            const std::string pointer = "/offsets/" + std::to_string(i);
+            is_sound &= check_family(pointer, parameters_.offsets[i].normal, place_of);
+        }
+        return is_sound;
+    }
+
+    // False where the planes are of no family, or of one that has some.
+    bool check_family(
+        const std::string& pointer,
+        const std::array<double, 3>& normal,
+        std::vector<std::string>& place_of
+    ) {
+        if (point_of(normal).norm() <= 1e-9) {
+            return false;  // a fault of its own
+        }
+        const auto family = reading_.topes().find_family(point_of(normal));
+        if (!family) {
+            faults_.push_back(
+                {pointer + "/normal", "no face of the example has this normal or its opposite"}
+            );
+            return false;
+        }
+        std::string& place = place_of[*family];
+        if (!place.empty()) {
+            faults_.push_back(
+                {pointer + "/normal", "these planes are those of " + place + " already"}
+            );
+            return false;
+        }
+        place = pointer;
+        return true;
+    }
+
     void check_size() {
         const GridSize cells = cells_of(parameters_);
         const std::int32_t longest = std::max({cells.x, cells.y, cells.z});
-        const double count = meetings(reading_, parameters_);
         if (longest > kCellsAlongMax) {
             faults_.push_back(
                 {"/size",
@@ -125,7 +204,39 @@ class FaultFinder {
                      number(*parameters_.spacing) + " metres",
                  true}
             );
-        } else if (count > kMeetingsMax) {
+        } else if (parameters_.spacings.empty() && parameters_.offsets.empty()) {
+            // What follows from one spacing is close to it: not worth the time to work it out.
+            const std::size_t families = reading_.topes().family_count();
+            check_meetings(std::vector<double>(families, *parameters_.spacing));
+        } else {
+            check_planes();
+        }
+    }
+
+    void check_planes() {
+        const std::vector<double> counts = count_planes(reading_, parameters_);
+        const double most = *std::max_element(counts.begin(), counts.end());
+        if (most > static_cast<double>(kPlanesMax) || lines_of(counts) > kLinesMax) {
+            faults_.push_back(
+                {parameters_.spacings.empty() ? "/size" : "/spacing",
+                 "there would be too many planes, up to " + number(std::round(most)) +
+                     " of one direction; a wider spacing or a smaller size helps",
+                 true}
+            );
+            return;
+        }
+        const Bounds box = model_box(reading_, parameters_);
+        std::vector<double> steps;
+        for (std::size_t family = 0; family < counts.size(); ++family) {
+            const Reach reach = reach_along(reading_.topes().normals()[family], box);
+            steps.push_back((reach.high - reach.low) / counts[family]);
+        }
+        check_meetings(steps);
+    }
+
+    void check_meetings(std::span<const double> steps) {
+        const double count = meetings(reading_, parameters_, steps);
+        if (count > kMeetingsMax) {
             faults_.push_back(
                 {"/size",
                  "the planes of the model would meet in some " + number(std::round(count / 1e6)) +

@@ -106,7 +106,8 @@ std::vector<Label> plain_labels(const ExampleReading& reading, const Arrangement
             // Planes of other families may meet very near to the ground's.
             const bool is_on_plane = (arrangement.families(site) >> family & 1) != 0;
             const bool is_on_ground =
-                is_on_plane && std::abs(y) < arrangement.frame().cell * kBelowGround;
+                is_on_plane &&
+                arrangement.planes(family)[arrangement.plane_through(site, family)] == 0;
             labels[i] = is_on_ground ? bare : y < 0 ? below : empty;
         }
     }

@@ -1,8 +1,10 @@
 #include "solver/continuous/object_rules.h"
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace modelsynth::continuous {
 
@@ -10,6 +12,13 @@ namespace {
 
 // What is looked at of a cell is so many spacings away from its vertex.
 constexpr double kLook = 0.2;
+
+// How a cell lies to a region. Below y = 0 the ground is left alone, and what is to fill a region
+// need not go on; but what is sunk into the ground is kept out of what is above it.
+enum class Within : std::uint8_t { kNot, kAbove, kBelow };
+
+// By tope.
+using Cells = std::vector<Within>;
 
 // One rule that says which objects may not be where.
 class RegionRule {
@@ -20,21 +29,32 @@ class RegionRule {
           banned_(objects_named(reading.example(), constraint.objects)) {
         if (std::holds_alternative<FixedRule>(constraint.rule)) {
             banned_.flip();
+        } else {
+            banned_below_ = banned_;
+            banned_below_.reset(kEmpty);
+            banned_below_.reset(reading.example().ground.value_or(kEmpty));
         }
     }
 
     // The figures that are left to a vertex; null: all.
     const LabelSet* allowed(const Point& place, double look) {
         const Topes& topes = figures_.topes();
-        if (coverage_.is_uniform(place, look)) {
+        const bool is_low = place.y() < look && banned_below_.any();
+        if (!is_low && coverage_.is_uniform(place, look)) {
             return coverage_.at(place) >= 1 ? &inside() : nullptr;
         }
-        std::vector<bool> within(topes.count());
+        Cells within(topes.count(), Within::kNot);
         bool any = false;
         for (std::size_t t = 0; t < topes.count(); ++t) {
-            const Point there = place + look * topes.inside(static_cast<Tope>(t));
-            within[t] = coverage_.at(there) >= 1;
-            any = any || within[t];
+            Point there = place + look * topes.inside(static_cast<Tope>(t));
+            const bool is_below = there.y() < 0;
+            if (is_low && is_below) {
+                there.y() = 0;
+            }
+            if (coverage_.at(there) >= 1) {
+                within[t] = is_below ? Within::kBelow : Within::kAbove;
+                any = true;
+            }
         }
         return any ? &of_cells(std::move(within)) : nullptr;
     }
@@ -42,12 +62,12 @@ class RegionRule {
   private:
     const LabelSet& inside() {
         if (!inside_) {
-            inside_ = filtered(std::vector<bool>(figures_.topes().count(), true));
+            inside_ = filtered(Cells(figures_.topes().count(), Within::kAbove));
         }
         return *inside_;
     }
 
-    const LabelSet& of_cells(std::vector<bool> within) {
+    const LabelSet& of_cells(Cells within) {
         const auto known = of_cells_.find(within);
         if (known != of_cells_.end()) {
             return known->second;
@@ -56,13 +76,15 @@ class RegionRule {
         return of_cells_.emplace(std::move(within), std::move(set)).first->second;
     }
 
-    [[nodiscard]] LabelSet filtered(const std::vector<bool>& within) const {
+    [[nodiscard]] LabelSet filtered(const Cells& within) const {
         LabelSet set(figures_.count());
         for (std::size_t l = 0; l < figures_.count(); ++l) {
             const Figure& figure = figures_.at(static_cast<Label>(l));
             bool fits = true;
             for (std::size_t t = 0; t < within.size(); ++t) {
-                fits = fits && !(within[t] && banned_[static_cast<ObjectId>(figure[t])]);
+                const auto object = static_cast<ObjectId>(figure[t]);
+                fits = fits && !(within[t] == Within::kAbove && banned_[object]) &&
+                       !(within[t] == Within::kBelow && banned_below_[object]);
             }
             if (fits) {
                 set.insert(static_cast<Label>(l));
@@ -74,8 +96,9 @@ class RegionRule {
     const Figures& figures_;
     Coverage coverage_;
     ObjectSet banned_;
+    ObjectSet banned_below_;  // y = 0
     std::optional<LabelSet> inside_;
-    std::map<std::vector<bool>, LabelSet> of_cells_;
+    std::map<Cells, LabelSet> of_cells_;
 };
 
 bool bans_objects(const Constraint& constraint) {

@@ -23,7 +23,8 @@ using ObjectSet = std::bitset<kObjectTypesMax + 1>;
 [[nodiscard]] LabelSet figures_of(const Figures& figures, const ObjectSet& objects);
 
 // Takes from every vertex the figures that fixed, forbidden and probability 0 do not allow there:
-// of a figure counts what it has in cells that lead into the region.
+// of a figure counts what it has in cells that lead into the region. What is forbidden is so below
+// y = 0, too, under the region, unless it is the ground.
 // Cost: O(vertices * rules), at the border of regions also * cells.
 void narrow_to_regions(
     const ExampleReading& reading,

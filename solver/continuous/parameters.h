@@ -14,10 +14,31 @@
 
 namespace modelsynth::continuous {
 
+// Across a direction planes are asked for so far apart, ...
+struct FamilySpacing {
+    std::array<double, 3> normal = {0, 1, 0};  // need not be of unit length
+    double spacing = 1;                        // metres
+
+    friend bool operator==(const FamilySpacing&, const FamilySpacing&) = default;
+};
+
+// ... or one by one: { p : n . p = offset }, n the normal at unit length. In any order; those that
+// are one plane, or outside of the model, do not matter.
+struct FamilyOffsets {
+    std::array<double, 3> normal = {0, 1, 0};
+    std::vector<double> offsets;  // metres
+
+    friend bool operator==(const FamilyOffsets&, const FamilyOffsets&) = default;
+};
+
 // What a continuous synthesis can be asked for; plain data.
 struct Parameters {
     std::optional<std::array<double, 3>> size;  // metres; none: the example's default
     std::optional<double> spacing;              // metres; none: the example's
+    // Families that are not spaced as follows from `spacing` and the example; each but once in
+    // both lists.
+    std::vector<FamilySpacing> spacings;
+    std::vector<FamilyOffsets> offsets;
     // In spacings. None: chosen to suit the size; a value without blocks: the whole at once.
     std::optional<std::optional<Blocks>> blocks;
     // 0 ... 1: how full the model is to be. What is empty space or bare ground has the weight
@@ -33,6 +54,7 @@ struct Parameters {
 };
 
 inline constexpr std::int32_t kCellsAlongMax = 4096;
+inline constexpr std::size_t kOffsetsMax = 4096;  // of one family
 
 struct Example;
 

@@ -2,43 +2,16 @@
 
 #include "solver/continuous/domains.h"
 #include "solver/continuous/initial_model.h"
+#include "solver/continuous/model_planes.h"
 #include "solver/continuous/object_rules.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 
 namespace modelsynth::continuous {
 
 namespace {
-
-PlaneOffsets planes_through(const Point& normal, double spacing, const Bounds& box) {
-    double low = 0;
-    double high = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        low += std::min(normal[axis] * box.min[axis], normal[axis] * box.max[axis]);
-        high += std::max(normal[axis] * box.min[axis], normal[axis] * box.max[axis]);
-    }
-    PlaneOffsets offsets;
-    for (double k = std::floor(low / spacing); k * spacing < high - 1e-9 * spacing; ++k) {
-        if (k * spacing > low + 1e-9 * spacing) {
-            offsets.push_back(k * spacing);
-        }
-    }
-    return offsets;
-}
-
-Arrangement::Frame frame_of(const Parameters& parameters, bool has_ground) {
-    const double spacing = *parameters.spacing;
-    const std::array<double, 3>& size = *parameters.size;
-    Arrangement::Frame frame;
-    frame.box.min = Point(0, has_ground ? -kBelowGround * spacing : 0, 0);
-    frame.box.max = Point(size[0], size[1], size[2]);
-    frame.cells = cells_of(parameters);
-    frame.cell = spacing;
-    return frame;
-}
 
 // Figures that no vertex of the arrangement has planes for.
 std::vector<Label> find_homeless(const Figures& figures, const Arrangement& arrangement) {
@@ -94,28 +67,15 @@ std::unique_ptr<const Symmetries> symmetries_of(
 
 }  // namespace
 
-std::vector<PlaneOffsets> planes_of(
-    const ExampleReading& reading, const Parameters& parameters, const Spacings& spacings
-) {
-    const Topes& topes = reading.topes();
-    const Bounds box = frame_of(parameters, reading.example().ground.has_value()).box;
-    std::vector<PlaneOffsets> planes;
-    for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        planes.push_back(planes_through(topes.normals()[family], spacings.of_family[family], box));
-    }
-    return planes;
-}
-
 Result<Problem> make_problem(
     std::shared_ptr<const ExampleReading> reading, const Parameters& parameters
 ) {
     const Topes& topes = reading->topes();
     const Figures& figures = reading->figures();
-    const std::vector<double> fixed(topes.family_count(), 0);
-    Spacings spacings = solve_spacings(figures, *parameters.spacing, fixed);
-    const Arrangement::Frame frame = frame_of(parameters, reading->example().ground.has_value());
-    const std::vector<PlaneOffsets> planes = planes_of(*reading, parameters, spacings);
-    auto arrangement = Arrangement::make(topes, planes, frame, kVerticesMax);
+    ModelPlanes planes = make_planes(*reading, parameters);
+    const Arrangement::Frame frame = {
+        model_box(*reading, parameters), cells_of(parameters), *parameters.spacing};
+    auto arrangement = Arrangement::make(topes, planes.offsets, frame, kVerticesMax);
     if (!arrangement) {
         return tl::unexpected(std::move(arrangement.error()));
     }
@@ -124,7 +84,7 @@ Result<Problem> make_problem(
         return tl::unexpected(std::move(weights.error()));
     }
     std::vector<Label> plain = plain_labels(*reading, *arrangement);
-    SiteDomains domains = make_domains(*reading, parameters, *arrangement, spacings, plain);
+    SiteDomains domains = make_domains(*reading, parameters, *arrangement, planes, plain);
     auto symmetries = symmetries_of(*reading, parameters, *arrangement);
     if (symmetries) {
         symmetries->narrow(domains);
@@ -144,7 +104,7 @@ Result<Problem> make_problem(
     std::vector<Connection> connections = connections_of(*reading, parameters);
     return Problem{
         std::move(reading),
-        std::move(spacings),
+        std::move(planes.spacings),
         std::move(*arrangement),
         std::move(domains),
         std::move(*weights),

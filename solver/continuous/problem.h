@@ -38,11 +38,6 @@ struct Problem {
     }
 };
 
-// The offsets of every family's planes in the model. Requires: every parameter has a value.
-[[nodiscard]] std::vector<PlaneOffsets> planes_of(
-    const ExampleReading& reading, const Parameters& parameters, const Spacings& spacings
-);
-
 // Requires: every parameter has a value, and find_faults() finds nothing.
 // Fails: kTooLarge, kInvalidArgument; see Arrangement::make() and make_weights(); kContradiction,
 // kGaveUp; see find_initial_labels().

@@ -143,13 +143,19 @@ std::optional<double> on_grid(
 
 }  // namespace
 
-Spacings solve_spacings(const Figures& figures, double spacing, std::span<const double> fixed) {
+Spacings solve_spacings(
+    const Figures& figures, double spacing, std::span<const double> fixed, FamilySet listed
+) {
     const Topes& topes = figures.topes();
     const std::size_t m = topes.family_count();
-    const std::vector<Circuit> circuits = circuits_of(figures);
+    std::vector<Circuit> circuits = circuits_of(figures);
+    std::erase_if(circuits, [listed](const Circuit& circuit) {
+        return (circuit.families & listed) != 0;
+    });
     std::vector<double> found(fixed.begin(), fixed.end());
     for (std::size_t family = 0; family < m; ++family) {
-        if (found[family] == 0 && is_along_axis(topes.normals()[family])) {
+        const bool is_listed = (listed >> family & 1) != 0;
+        if (is_listed || (found[family] == 0 && is_along_axis(topes.normals()[family]))) {
             found[family] = spacing;
         }
     }
@@ -195,6 +201,9 @@ Spacings solve_spacings(const Figures& figures, double spacing, std::span<const 
     }
 
     Spacings solved = {std::move(found), {}};
+    for (const std::size_t family : members_of(listed)) {
+        solved.of_family[family] = 0;
+    }
     for (const Circuit& circuit : circuits) {
         const auto& [first, c] = circuit.members.front();
         const double lambda = c * solved.of_family[first];

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace modelsynth {
@@ -20,6 +21,8 @@ struct SynthesisStats {
     std::vector<std::optional<double>> candidates = {};
     // Of the surface, where the model is made of polygons.
     std::optional<std::size_t> polygons = std::nullopt;
+    // What of the request could not be had, one sentence each.
+    std::vector<std::string> warnings = {};
 };
 
 }  // namespace modelsynth

@@ -6,6 +6,7 @@
 #include "solver/continuous/scene.h"
 #include "solver/continuous/surface.h"
 #include "solver/continuous/synthesis.h"
+#include "solver/continuous/warnings.h"
 #include "solver/discrete/analysis/infallibility.h"
 #include "solver/discrete/faults.h"
 #include "solver/discrete/scene.h"
@@ -218,6 +219,7 @@ Result<Finished> run_continuous(
         return tl::unexpected(std::move(made.error()));
     }
     made->stats.polygons = continuous::make_surface(**problem, made->labels).polygons.size();
+    made->stats.warnings = continuous::warnings_of(**problem);
     return Finished{{make_vertex_space(*problem), std::move(made->labels)}, std::move(made->stats)};
 }
 

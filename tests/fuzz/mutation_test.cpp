@@ -255,7 +255,7 @@ constexpr const char* kWedge =
     R"({"kind":"continuous","name":"wedge","objects":[)"
     R"({"name":"grass","color":[0.2,0.4,0.1]},{"name":"wall","weight":2}],)"
     R"("ground":"grass","spacing":1,"size":[6,4,6],"density":0.4,)"
-    R"("dimensions":[{"object":"wall","normal":[0,0,1]}],)"
+    R"("dimensions":[{"object":"wall","normal":[0,0,1]}],"connected":[["wall","grass"]],)"
     R"("bounds":{"min":[-9,-9,-9],"max":[9,9,9]},"polyhedra":[{"name":"w",)"
     R"("object":"wall","vertices":[[0,0,0],[2,0,0],[0,1,0],[0,0,1],[2,0,1],)"
     R"([0,1,1]],"faces":[[0,2,1],[3,4,5],[0,1,4,3],[1,2,5,4],[0,3,5,2]]}]})";
@@ -264,7 +264,9 @@ constexpr const char* kWedge =
 TEST(Fuzz, Solids) {
     const std::string request =
         std::string(R"({"solver":"continuous","example":)") + kWedge +
-        R"(,"seed":7,"parameters":{"size":[5,3.5,6],"spacing":1,"blocks":{"size":[4,4,4]},)"
+        R"(,"seed":7,"parameters":{"size":[5,3.5,6],"blocks":{"size":[4,4,4]},)"
+        R"("spacing":[{"normal":[0,1,0],"spacing":0.75},{"spacing":1}],)"
+        R"("offsets":[{"normal":[0,0,1],"offsets":[0.5,2,4.25]}],)"
         R"("density":0.5,"weights":{"wall":3},"constraints":[{"kind":"dimension","object":"wall",)"
         R"("normal":[0,0,1]}]},"tags":{}})";
     std::size_t made = 0;
@@ -280,6 +282,33 @@ TEST(Fuzz, Solids) {
     fuzz(kWedge, 12, [](const std::string& text) {
         return proto::parse_example(text, {}).has_value();
     });
+}
+
+// What is accepted of their constraints, too.
+TEST(Fuzz, ConstraintsOfSolids) {
+    std::string request = R"({"solver":"continuous","example":)";
+    request += kWedge;
+    request +=
+        R"(,"seed":7,"parameters":{"size":[5,3,6],"blocks":{"size":[4,4,4]},"constraints":[)"
+        R"({"kind":"dimension","object":"wall","normal":[0,0,1],"spacings":2},)"
+        R"({"kind":"connected","objects":["wall","grass"],"components":2},)"
+        R"({"kind":"fixed","objects":["empty","grass"],"box":{"min":[3,0,0],"max":[5,3,6]}},)"
+        R"({"kind":"forbidden","objects":["wall"],"voxels":{"size":[1,2,1],"values":[0,1]}},)"
+        R"({"kind":"probability","objects":["wall"],"weight":2.5,"mask":")"
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAABAAAAAQCAAAAAA6mKC9AAAAMUlEQ"
+        "VR4nGNgIAb8//8fiQIzQEwoBWXAAVECDOh8ZBEke1H4MBE0t6HwQSJEeQorAADMnWOd53M09AAA"
+        "AABJRU5ErkJggg=="
+        R"("}]}})";
+    std::size_t made = 0;
+    fuzz(request, 16, [&](const std::string& text) {
+        const auto parsed = read_request(text);
+        if (!parsed) {
+            return false;
+        }
+        made += is_made(parsed->task) ? 1U : 0U;
+        return true;
+    });
+    EXPECT_GT(made, 1U);  // the request as it stands, and others
 }
 
 TEST(Fuzz, SolidsInBinaryGltf) {

@@ -139,7 +139,7 @@ def test_equal_requests_give_equal_bytes_and_seeds_different_ones(server):
 def test_the_echo_makes_the_same_model_again(server):
     job = make(server)
     echo = job["request"]
-    assert set(echo["parameters"]) == {"size", "spacing", "blocks", "density", "weights",
+    assert set(echo["parameters"]) == {"size", "spacing", "offsets", "blocks", "density", "weights",
                                        "constraints"}
     answer = server.request("POST", "/v1/jobs", echo, headers={"Prefer": "wait=60"})
     assert answer.json()["result"]["sha256"] == job["result"]["sha256"]
@@ -539,7 +539,7 @@ def test_a_job_goes_on_after_a_crash(make_server):
 
 def test_the_requests_of_the_guide_are_done(server):
     requests = re.findall(r"```json\n(.*?)```", _GUIDE.read_text(), re.DOTALL)
-    assert len(requests) == 2
+    assert len(requests) == 10
     for text in requests:
         answer = server.request("POST", "/v1/jobs", text, headers={
             "Prefer": "wait=60", "Content-Type": "application/json"})

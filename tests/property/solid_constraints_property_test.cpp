@@ -1,0 +1,445 @@
+// Constraints of solids: random ones on random examples, and what one sees of the models.
+// MODELSYNTH_SOLID_CASES asks for a longer run.
+
+#include "solver/continuous/connections.h"
+#include "solver/continuous/graph_part.h"
+#include "solver/continuous/skeleton.h"
+#include "solver/continuous/surface.h"
+#include "solver/continuous/synthesis.h"
+#include "solver/examples/solids/built_in_solids.h"
+#include "tests/support/examples.h"
+#include "tests/support/random_solids.h"
+#include "tests/support/solid_places.h"
+#include "tests/support/surface_checker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace modelsynth::continuous {
+namespace {
+
+using testing::RecordingObserver;
+using testing::SolidPlaces;
+using testing::SolidsKind;
+using testing::SurfaceChecker;
+
+using Reading = std::shared_ptr<const ExampleReading>;
+
+// Of the standard library the engine alone is the same everywhere.
+class Chance {
+  public:
+    explicit Chance(std::uint64_t seed) : random_(seed) {}
+
+    int below(int bound) { return static_cast<int>(random_() % static_cast<std::uint64_t>(bound)); }
+
+    double share() { return static_cast<double>(random_() % 1'000'003) / 1'000'003; }
+
+  private:
+    std::mt19937_64 random_;
+};
+
+// A random request for a model of whole spacings, whose regions follow the planes of the axes.
+class RequestMaker {
+  public:
+    RequestMaker(const ExampleReading& reading, std::uint64_t seed, int extent_max)
+        : reading_(reading), chance_(seed) {
+        for (int& extent : extent_) {
+            extent = 3 + chance_.below(extent_max - 2);
+        }
+    }
+
+    Parameters make() {
+        Parameters parameters;
+        parameters.size = {1.0 * extent_[0], 1.0 * extent_[1], 1.0 * extent_[2]};
+        parameters.density = 0.3 + 0.7 * chance_.share();
+        Blocks blocks;
+        blocks.layout.size = {2 + chance_.below(4), 2 + chance_.below(4), 2 + chance_.below(4)};
+        blocks.layout.passes = 1U + static_cast<std::uint32_t>(chance_.below(2));
+        parameters.blocks = blocks;
+        if (chance_.below(8) == 0) {
+            parameters.blocks->reset();
+        }
+        parameters.constraints.emplace();
+        for (int i = 1 + chance_.below(3); i > 0; --i) {
+            parameters.constraints->push_back(constraint());
+        }
+        return fill_defaults(parameters, reading_.example());
+    }
+
+  private:
+    Constraint constraint() {
+        switch (chance_.below(8)) {
+            case 0: {
+                const std::span<const Point> normals = reading_.topes().normals();
+                const Point& n =
+                    normals[static_cast<std::size_t>(chance_.below(static_cast<int>(normals.size()))
+                    )];
+                return {
+                    DimensionRule{{n.x(), n.y(), n.z()}, 1 + chance_.below(3)}, {object(false)}};
+            }
+            case 1:
+            case 2:
+            case 3:
+                return {
+                    ConnectedRule{1U + static_cast<std::uint32_t>(chance_.below(3))},
+                    objects(false)};
+            case 4:
+                return {FixedRule{}, objects(true), region()};
+            case 5:
+                return {ForbiddenRule{}, objects(true), region()};
+            case 6:
+                return {ProbabilityRule{0}, objects(false), region()};
+            default:
+                return {ProbabilityRule{4 * chance_.share()}, objects(false), region()};
+        }
+    }
+
+    std::string object(bool may_be_empty) {
+        const auto& all = reading_.example().objects;
+        const int number = chance_.below(static_cast<int>(all.size()) + (may_be_empty ? 1 : 0));
+        return number == static_cast<int>(all.size()) ? kEmptyName
+                                                      : all[static_cast<std::size_t>(number)].name;
+    }
+
+    std::vector<std::string> objects(bool may_be_empty) {
+        std::vector<std::string> names;
+        for (int i = 1 + chance_.below(3); i > 0; --i) {
+            names.push_back(object(may_be_empty));
+        }
+        return names;
+    }
+
+    Region region() {
+        Region region;
+        const int kind = chance_.below(8);
+        if (kind < 4) {
+            MetreBox& box = region.box.emplace();
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const int low = chance_.below(extent_[axis]);
+                box.min[axis] = low;
+                box.max[axis] = low + 1 + chance_.below(std::min(3, extent_[axis] - low));
+            }
+        }
+        if (kind == 4 || kind == 3) {
+            Mask& mask = region.mask.emplace();
+            mask.width = extent_[0];
+            mask.depth = extent_[2];
+            for (int i = 0; i < mask.width * mask.depth; ++i) {
+                mask.values.push_back(
+                    static_cast<std::uint8_t>(chance_.below(5) == 0 ? 255 : 64 * chance_.below(3))
+                );
+            }
+        }
+        if (kind == 5 || kind == 6) {
+            Voxels& voxels = region.voxels.emplace();
+            voxels.size = {extent_[0], extent_[1], extent_[2]};
+            for (std::size_t i = 0; i < voxels.size.cell_count(); ++i) {
+                voxels.values.push_back(chance_.below(8) == 0 ? 1 : chance_.below(2) * 0.5);
+            }
+        }
+        return region;
+    }
+
+    const ExampleReading& reading_;
+    Chance chance_;
+    std::array<int, 3> extent_ = {};
+};
+
+// Whether a region, which holds everywhere when it says nothing, holds all of a cell of one
+// spacing: said anew, without Coverage.
+bool holds_cell(const Region& region, const Cell& cell) {
+    const std::array<double, 3> middle = {cell.x + 0.5, cell.y + 0.5, cell.z + 0.5};
+    if (!region.box && !region.mask && !region.voxels) {
+        return true;
+    }
+    bool is_in_box = region.box.has_value();
+    for (std::size_t axis = 0; axis < 3 && is_in_box; ++axis) {
+        is_in_box = region.box->min[axis] < middle[axis] && middle[axis] < region.box->max[axis];
+    }
+    const bool is_in_mask =
+        region.mask &&
+        region.mask->values[static_cast<std::size_t>(cell.x + cell.z * region.mask->width)] == 255;
+    const bool is_in_voxels =
+        region.voxels && region.voxels->values[region.voxels->size.index(cell)] == 1;
+    return is_in_box || is_in_mask || is_in_voxels;
+}
+
+bool names(const Constraint& constraint, const Example& example, ObjectId object) {
+    const std::string& name = object == kEmpty ? kEmptyName : example.objects[object - 1U].name;
+    return std::find(constraint.objects.begin(), constraint.objects.end(), name) !=
+           constraint.objects.end();
+}
+
+bool may_stand(const Constraint& constraint, const Example& example, ObjectId object) {
+    if (std::holds_alternative<FixedRule>(constraint.rule)) {
+        return names(constraint, example, object);
+    }
+    const auto* probability = std::get_if<ProbabilityRule>(&constraint.rule);
+    const bool is_ban = std::holds_alternative<ForbiddenRule>(constraint.rule) ||
+                        (probability != nullptr && probability->weight == 0);
+    return !is_ban || !names(constraint, example, object);
+}
+
+std::vector<ObjectId> objects_of(const Constraint& constraint, const Example& example) {
+    std::vector<ObjectId> objects;
+    for (std::size_t i = 0; i < example.objects.size(); ++i) {
+        if (names(constraint, example, static_cast<ObjectId>(i + 1))) {
+            objects.push_back(static_cast<ObjectId>(i + 1));
+        }
+    }
+    return objects;
+}
+
+// Looks at a model by its polygons.
+class ModelLooker {
+  public:
+    ModelLooker(const Problem& problem, const Parameters& parameters, const Surface& surface)
+        : problem_(problem),
+          example_(problem.reading->example()),
+          parameters_(parameters),
+          places_(
+              surface,
+              example_.objects.size(),
+              {problem.arrangement.frame().box.min, problem.arrangement.frame().box.max}
+          ) {}
+
+    [[nodiscard]] const SolidPlaces& places() const { return places_; }
+
+    void expect_kept(const Constraint& constraint, Chance& chance) const {
+        if (const auto* connected = std::get_if<ConnectedRule>(&constraint.rule)) {
+            EXPECT_LE(places_.pieces(objects_of(constraint, example_)), connected->components);
+        } else if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
+            expect_dimension(constraint, *dimension, chance);
+        } else {
+            expect_region(constraint, chance);
+        }
+    }
+
+  private:
+    void expect_region(const Constraint& constraint, Chance& chance) const {
+        for_each_cell(Box::whole(cells_of(parameters_)), [&](const Cell& cell) {
+            if (!holds_cell(constraint.region, cell)) {
+                return;
+            }
+            for (int i = 0; i < 2; ++i) {
+                const Point place = Point(
+                    cell.x + chance.share(), cell.y + chance.share(), cell.z + chance.share()
+                );
+                const ObjectId object = places_.at(place);
+                EXPECT_TRUE(may_stand(constraint, example_, object))
+                    << "object " << int{object} << " at " << place.transpose() << " is not to be";
+            }
+        });
+    }
+
+    // At the planes of the normal an object goes on where it may and ends where it has to.
+    void expect_dimension(const Constraint& constraint, const DimensionRule& rule, Chance& chance)
+        const {
+        const ObjectId object = objects_of(constraint, example_).front();
+        const Point normal = Point(rule.normal[0], rule.normal[1], rule.normal[2]).normalized();
+        const auto family = *problem_.reading->topes().find_family(normal);
+        const double spacing = problem_.spacings.of_family[family];
+        const Eigen::AlignedBox3d box = places_.set().frame().clip;
+        for (int i = 0; i < 400; ++i) {
+            const Point share(chance.share(), chance.share(), chance.share());
+            Point place = box.min() + share.cwiseProduct(box.sizes());
+            const auto plane = std::llround(normal.dot(place) / spacing);
+            place += (static_cast<double>(plane) * spacing - normal.dot(place)) * normal;
+            const Point step = 1e-4 * normal;
+            // Below y = 0 the ground stands for good at the model's border.
+            if (!box.contains(place + 2 * step) || !box.contains(place - 2 * step) ||
+                place.y() < 0) {
+                continue;
+            }
+            const bool is_above = places_.at(place + step) == object;
+            const bool is_below = places_.at(place - step) == object;
+            if (plane % rule.spacings == 0) {
+                EXPECT_FALSE(is_above && is_below) << "goes on at " << place.transpose();
+            } else {
+                EXPECT_EQ(is_above, is_below) << "ends at " << place.transpose();
+            }
+        }
+    }
+
+    const Problem& problem_;
+    const Example& example_;
+    const Parameters& parameters_;
+    SolidPlaces places_;
+};
+
+std::string text(const std::vector<std::string>& faults) {
+    std::string all;
+    for (const std::string& fault : faults) {
+        all += fault + "\n";
+    }
+    return all;
+}
+
+// Whether planes along the axes are one spacing apart, so that regions of cells follow them.
+bool has_axes(const Problem& problem, double spacing) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto family = problem.reading->topes().find_family(Point::Unit(axis));
+        if (!family || std::abs(problem.spacings.of_family[*family] - spacing) > 1e-9) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// What is counted while one block after the other changes is what there is.
+void expect_counted(
+    const Problem& problem, const Parameters& parameters, const RecordingObserver& observer
+) {
+    if (problem.connections.empty() || observer.reports.empty()) {
+        return;
+    }
+    std::vector<Connection> free = problem.connections;
+    std::vector<std::vector<ObjectId>> objects;
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (std::holds_alternative<ConnectedRule>(constraint.rule)) {
+            objects.push_back(objects_of(constraint, problem.reading->example()));
+        }
+    }
+    for (Connection& connection : free) {
+        connection.components = 1'000'000;
+    }
+    const auto has_ground = [&](const std::vector<ObjectId>& named) {
+        const auto ground = problem.reading->example().ground;
+        return ground && std::find(named.begin(), named.end(), *ground) != named.end();
+    };
+    const Skeleton skeleton(problem.arrangement);
+    Connections followed(problem.reading->figures(), skeleton, free);
+    Connections anew(problem.reading->figures(), skeleton, free);
+    followed.start(observer.initial_model);
+    for (std::size_t i = 0; i < observer.models.size(); ++i) {
+        followed.enter(part_of(problem.arrangement, observer.reports[i].region).sites());
+        ASSERT_TRUE(followed.accepts(observer.models[i]));
+        anew.start(observer.models[i]);
+        for (std::size_t c = 0; c < free.size(); ++c) {
+            ASSERT_EQ(followed.components(c), anew.components(c)) << "after block " << i;
+        }
+        if (i + 1 == observer.models.size() || i % 16 == 0) {
+            const Surface surface = make_surface(problem, observer.models[i]);
+            const ModelLooker looker(problem, parameters, surface);
+            for (std::size_t c = 0; c < free.size(); ++c) {
+                const std::size_t pieces = looker.places().pieces(objects[c]);
+                // The ground also hangs together at the model's border, where nothing is counted.
+                EXPECT_TRUE(has_ground(objects[c]) || pieces == anew.components(c))
+                    << pieces << " pieces, " << anew.components(c) << " counted after block " << i;
+            }
+        }
+    }
+}
+
+std::string name_of(const ::testing::TestParamInfo<SolidsKind>& tested) {
+    constexpr std::array<const char*, testing::kSolidsKindCount> kNames = {
+        "Boxes", "Wedges", "Tetrahedra", "Convex", "Slivers"};
+    return kNames.at(static_cast<std::size_t>(tested.param));
+}
+
+int case_count() {
+    const char* asked = std::getenv("MODELSYNTH_SOLID_CASES");
+    return asked == nullptr ? 60 : std::atoi(asked);
+}
+
+// What came of one random request.
+enum class Ending : std::uint8_t { kModel, kContradiction, kGaveUp, kNoModel };
+
+Ending expect_constraints_hold(const Reading& reading, std::uint64_t seed, int extent_max) {
+    RequestMaker maker(*reading, seed + 1000, extent_max);
+    const Parameters parameters = maker.make();
+    const auto problem = make_problem(reading, parameters);
+    if (!problem) {
+        const ErrorCode code = problem.error().code;
+        // Planes that nearly meet are no matter of constraints.
+        EXPECT_TRUE(
+            code == ErrorCode::kContradiction || code == ErrorCode::kGaveUp ||
+            code == ErrorCode::kInvalidArgument
+        ) << problem.error().message;
+        return code == ErrorCode::kContradiction ? Ending::kContradiction
+               : code == ErrorCode::kGaveUp      ? Ending::kGaveUp
+                                                 : Ending::kNoModel;
+    }
+    RecordingObserver observer;
+    const auto made = synthesise(*problem, parameters, seed, observer, {});
+    expect_counted(*problem, parameters, observer);
+    if (!made) {
+        EXPECT_EQ(made.error().code, ErrorCode::kGaveUp) << made.error().message;
+        return Ending::kGaveUp;
+    }
+    const Surface surface = make_surface(*problem, made->labels);
+    const ModelLooker looker(*problem, parameters, surface);
+    EXPECT_EQ(
+        text(SurfaceChecker(reading->example())
+                 .find_faults(surface, looker.places().set().frame().clip)),
+        ""
+    );
+    Chance chance(seed);
+    for (const Constraint& constraint : *parameters.constraints) {
+        SCOPED_TRACE(kRuleNames.at(constraint.rule.index()));
+        if (!has_region(constraint.rule) || has_axes(*problem, *parameters.spacing)) {
+            looker.expect_kept(constraint, chance);
+        }
+    }
+    return Ending::kModel;
+}
+
+class SolidConstraints : public ::testing::TestWithParam<SolidsKind> {};
+
+TEST_P(SolidConstraints, HoldForWhateverIsMade) {
+    std::array<std::size_t, 4> endings = {};
+    for (int seed = 0; seed < case_count(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const auto reading =
+            ExampleReading::make(make_random_solids(GetParam(), static_cast<std::uint32_t>(seed)));
+        if (!reading || (*reading)->topes().family_count() > 7) {
+            continue;
+        }
+        const int extent_max = (*reading)->topes().family_count() > 4 ? 4 : 6;
+        const Ending ending =
+            expect_constraints_hold(*reading, static_cast<std::uint64_t>(seed), extent_max);
+        ++endings.at(static_cast<std::size_t>(ending));
+    }
+    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], 10U);
+    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kContradiction)], 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds,
+    SolidConstraints,
+    ::testing::Values(
+        SolidsKind::kBoxes, SolidsKind::kWedges, SolidsKind::kTetrahedra, SolidsKind::kConvex
+    ),
+    name_of
+);
+
+TEST(SolidConstraintsOfBuiltInExamples, HoldForWhateverIsMade) {
+    std::array<std::size_t, 4> endings = {};
+    for (const Reading& reading : examples::built_in_solids()) {
+        if (reading->example().spacing != 1) {
+            continue;  // requests here are in metres that are spacings
+        }
+        for (int seed = 0; seed < case_count() / 15; ++seed) {
+            SCOPED_TRACE(reading->example().name + ", seed " + std::to_string(seed));
+            const Ending ending =
+                expect_constraints_hold(reading, static_cast<std::uint64_t>(seed), 8);
+            ++endings.at(static_cast<std::size_t>(ending));
+        }
+    }
+    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], 10U);
+}
+
+}  // namespace
+}  // namespace modelsynth::continuous
