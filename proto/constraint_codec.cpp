@@ -62,25 +62,6 @@ Rule read_path(ObjectReader& reader, const RequestLimits& limits) {
     return path;
 }
 
-std::vector<std::pair<std::string, std::string>> read_mirror(
-    const Value& value, const RequestLimits& limits
-) {
-    std::vector<std::pair<std::string, std::string>> mirror;
-    if (!value.json().is_object()) {
-        value.fault("must be an object that names each piece's image");
-        return mirror;
-    }
-    for (const auto& [name, json] : value.json().items()) {
-        const Value image(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_characters_max) {
-            image.fault("the name is too long");
-        } else if (auto text = image.string(limits.name_characters_max)) {
-            mirror.emplace_back(name, std::move(*text));
-        }
-    }
-    return mirror;
-}
-
 Rule read_symmetry(ObjectReader& reader, const Value& whole, const RequestLimits& limits) {
     using Kind = discrete::Symmetry::Kind;
     discrete::Symmetry symmetry;
@@ -355,6 +336,25 @@ struct RuleWriter {
 };
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> read_mirror(
+    const Value& value, const RequestLimits& limits
+) {
+    std::vector<std::pair<std::string, std::string>> mirror;
+    if (!value.json().is_object()) {
+        value.fault("must be an object that names images by what they are of");
+        return mirror;
+    }
+    for (const auto& [name, json] : value.json().items()) {
+        const Value image(json, value.pointer() + "/" + pointer_part(name), value.faults());
+        if (name.size() > limits.name_characters_max) {
+            image.fault("the name is too long");
+        } else if (auto text = image.string(limits.name_characters_max)) {
+            mirror.emplace_back(name, std::move(*text));
+        }
+    }
+    return mirror;
+}
 
 std::vector<Constraint> read_constraints(const Value& value, const RequestLimits& limits) {
     std::vector<Constraint> constraints;

@@ -6,12 +6,19 @@
 #include "proto/limits.h"
 #include "solver/discrete/parameters.h"
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace modelsynth::proto {
 
 // The list of constraints of a discrete synthesis; what is wrong goes to the value's faults.
 [[nodiscard]] std::vector<discrete::Constraint> read_constraints(
+    const Value& value, const RequestLimits& limits
+);
+
+// The field `mirror` of a symmetry.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> read_mirror(
     const Value& value, const RequestLimits& limits
 );
 

@@ -142,20 +142,6 @@ Parsed<Json> parse_json(std::string_view text, const JsonLimits& limits) {
     return Json::parse(text, nullptr, false);
 }
 
-std::string pointer_part(std::string_view name) {
-    std::string escaped;
-    for (const char c : name) {
-        if (c == '~') {
-            escaped += "~0";
-        } else if (c == '/') {
-            escaped += "~1";
-        } else {
-            escaped += c;
-        }
-    }
-    return escaped;
-}
-
 std::optional<std::int64_t> Value::integer(std::int64_t min, std::int64_t max) const {
     const auto refuse = [&]() -> std::optional<std::int64_t> {
         fault("must be a whole number from " + std::to_string(min) + " to " + std::to_string(max));

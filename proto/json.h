@@ -34,9 +34,6 @@ std::string dump(const Document& document) {
 // Fails: malformed-json with the byte offset.
 [[nodiscard]] Parsed<Json> parse_json(std::string_view text, const JsonLimits& limits);
 
-// A name as part of a JSON Pointer (RFC 6901).
-[[nodiscard]] std::string pointer_part(std::string_view name);
-
 // Collects what is wrong with a document, all of it and not only the first.
 class Faults {
   public:

@@ -1,5 +1,6 @@
 #include "proto/solid_constraint_codec.h"
 
+#include "proto/constraint_codec.h"
 #include "proto/continuous_codec.h"
 #include "proto/region_codec.h"
 
@@ -19,9 +20,11 @@ using continuous::DimensionRule;
 using continuous::FixedRule;
 using continuous::ForbiddenRule;
 using continuous::MetreBox;
+using continuous::Point;
 using continuous::ProbabilityRule;
 using continuous::Region;
 using continuous::Rule;
+using continuous::SymmetryRule;
 
 std::optional<MetreBox> read_metre_box(const Value& value) {
     ObjectReader reader(value);
@@ -65,7 +68,40 @@ DimensionRule read_dimension(ObjectReader& reader) {
     return rule;
 }
 
-Rule read_rule(std::size_t kind, ObjectReader& reader) {
+SymmetryRule read_symmetry(ObjectReader& reader, const Value& whole, const RequestLimits& limits) {
+    using Kind = SymmetryRule::Kind;
+    SymmetryRule rule;
+    int kinds = 0;
+    if (const auto reflect = reader.optional("reflect")) {
+        ++kinds;
+        rule.kind = reflect->one_of({"x", "z"}) == 1U ? Kind::kReflectZ : Kind::kReflectX;
+    }
+    if (const auto translate = reader.optional("translate")) {
+        ++kinds;
+        rule.kind = Kind::kTranslate;
+        const Point step = read_point(*translate, kMetresMax).value_or(Point::UnitX());
+        rule.translation = {step.x(), step.y(), step.z()};
+    }
+    if (const auto rotate = reader.optional("rotate")) {
+        ++kinds;
+        const auto turns = rotate->integer(2, 4);
+        if (turns == 3) {
+            rotate->fault("must be 2, by half turns, or 4, by quarter turns");
+        }
+        rule.kind = turns == 4 ? Kind::kQuarterTurn : Kind::kHalfTurn;
+    }
+    if (kinds != 1) {
+        whole.fault("symmetry needs one of \"reflect\", \"translate\" and \"rotate\"");
+    }
+    if (const auto mirror = reader.optional("mirror")) {
+        rule.mirror = read_mirror(*mirror, limits);
+    }
+    return rule;
+}
+
+Rule read_rule(
+    std::size_t kind, ObjectReader& reader, const Value& whole, const RequestLimits& limits
+) {
     switch (kind) {
         case 0:
             return read_dimension(reader);
@@ -81,13 +117,15 @@ Rule read_rule(std::size_t kind, ObjectReader& reader) {
             return FixedRule{};
         case 3:
             return ForbiddenRule{};
-        default: {
+        case 4: {
             ProbabilityRule rule;
             if (const auto weight = reader.required("weight")) {
                 rule.weight = weight->number(0, 1e6).value_or(1);
             }
             return rule;
         }
+        default:
+            return read_symmetry(reader, whole, limits);
     }
 }
 
@@ -102,11 +140,14 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
         return nothing;
     }
     Constraint constraint;
-    constraint.rule = read_rule(*kind, reader);
+    constraint.rule = read_rule(*kind, reader, value, limits);
     if (std::holds_alternative<DimensionRule>(constraint.rule)) {
         if (const auto object = reader.required("object")) {
             constraint.objects = {object->string(limits.name_characters_max).value_or("")};
         }
+    } else if (std::holds_alternative<SymmetryRule>(constraint.rule)) {
+        reader.finish();
+        return constraint;  // of the whole model, whatever it is made of
     } else if (const auto objects = reader.required("objects")) {
         constraint.objects =
             objects->strings(1, continuous::kObjectTypesMax, limits.name_characters_max)
@@ -119,12 +160,40 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
     return constraint.objects.empty() ? nothing : constraint;
 }
 
+void write_symmetry(const SymmetryRule& rule, OrderedJson& written) {
+    switch (rule.kind) {
+        case SymmetryRule::Kind::kReflectX:
+            written["reflect"] = "x";
+            break;
+        case SymmetryRule::Kind::kReflectZ:
+            written["reflect"] = "z";
+            break;
+        case SymmetryRule::Kind::kHalfTurn:
+            written["rotate"] = 2;
+            break;
+        case SymmetryRule::Kind::kQuarterTurn:
+            written["rotate"] = 4;
+            break;
+        case SymmetryRule::Kind::kTranslate:
+            written["translate"] = rule.translation;
+            break;
+    }
+    written["mirror"] = OrderedJson::object();
+    for (const auto& [object, image] : rule.mirror) {
+        written["mirror"][object] = image;
+    }
+}
+
 OrderedJson write_constraint(const Constraint& constraint) {
     OrderedJson written = {{"kind", continuous::kRuleNames[constraint.rule.index()]}};
     if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
         written["object"] = constraint.objects.front();
         written["normal"] = dimension->normal;
         written["spacings"] = dimension->spacings;
+        return written;
+    }
+    if (const auto* symmetry = std::get_if<SymmetryRule>(&constraint.rule)) {
+        write_symmetry(*symmetry, written);
         return written;
     }
     written["objects"] = constraint.objects;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -67,19 +68,34 @@ struct ProbabilityRule {
     friend bool operator==(const ProbabilityRule&, const ProbabilityRule&) = default;
 };
 
-using Rule = std::variant<DimensionRule, ConnectedRule, FixedRule, ForbiddenRule, ProbabilityRule>;
+// What stands at a place stands at the place's image, too, turned or mirrored as the place is
+// (2007 paper, 4.1). Reflections and turns are about the upright line through the middle of the
+// model.
+struct SymmetryRule {
+    enum class Kind : std::uint8_t { kReflectX, kReflectZ, kHalfTurn, kQuarterTurn, kTranslate };
+
+    Kind kind = Kind::kReflectX;             // a quarter turn: from the east to the north
+    std::array<double, 3> translation = {};  // for kTranslate, metres
+    // Objects and their images; see label_images() for those that are not named.
+    std::vector<std::pair<std::string, std::string>> mirror = {};
+
+    friend bool operator==(const SymmetryRule&, const SymmetryRule&) = default;
+};
+
+using Rule = std::
+    variant<DimensionRule, ConnectedRule, FixedRule, ForbiddenRule, ProbabilityRule, SymmetryRule>;
 
 // As requests name the rules, in the order of the alternatives of Rule.
 inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames = {
-    "dimension", "connected", "fixed", "forbidden", "probability"};
+    "dimension", "connected", "fixed", "forbidden", "probability", "symmetry"};
 
 // What requests call empty space, unless the example has an object of that name.
 inline constexpr const char* kEmptyName = "empty";
 
 // Whether it can be said where a rule holds.
 [[nodiscard]] inline bool has_region(const Rule& rule) {
-    return !std::holds_alternative<DimensionRule>(rule) &&
-           !std::holds_alternative<ConnectedRule>(rule);
+    return std::holds_alternative<FixedRule>(rule) || std::holds_alternative<ForbiddenRule>(rule) ||
+           std::holds_alternative<ProbabilityRule>(rule);
 }
 
 // Whether a rule may speak of empty space.
@@ -89,7 +105,7 @@ inline constexpr const char* kEmptyName = "empty";
 
 struct Constraint {
     Rule rule;
-    std::vector<std::string> objects = {};  // one for a dimension
+    std::vector<std::string> objects = {};  // one for a dimension, none for a symmetry
     Region region = {};
 
     friend bool operator==(const Constraint&, const Constraint&) = default;

@@ -2,6 +2,7 @@
 
 #include "solver/continuous/model_planes.h"
 #include "solver/continuous/reading.h"
+#include "solver/continuous/symmetries.h"
 
 #include <Eigen/Geometry>
 
@@ -81,14 +82,15 @@ class FaultFinder {
         : reading_(reading), parameters_(parameters) {}
 
     std::vector<Fault> find() && {
+        if (check_families()) {
+            check_size();
+        }
+        is_size_good_ = faults_.empty();
         for (const auto& [name, weight] : parameters_.weights) {
             check_object("/weights", name);
         }
         for (std::size_t i = 0; i < parameters_.constraints->size(); ++i) {
             check_constraint("/constraints/" + std::to_string(i), (*parameters_.constraints)[i]);
-        }
-        if (check_families()) {
-            check_size();
         }
         return std::move(faults_);
     }
@@ -114,11 +116,39 @@ class FaultFinder {
             }
             return;
         }
+        if (const auto* symmetry = std::get_if<SymmetryRule>(&constraint.rule)) {
+            check_symmetry(pointer, *symmetry);
+            return;
+        }
         for (std::size_t i = 0; i < constraint.objects.size(); ++i) {
             const std::string& name = constraint.objects[i];
             if (!may_name_empty(constraint.rule) || name != kEmptyName) {
                 check_object(pointer + "/objects/" + std::to_string(i), name);
             }
+        }
+    }
+
+    void check_symmetry(const std::string& pointer, const SymmetryRule& rule) {
+        const std::size_t before = faults_.size();
+        for (const auto& [object, image] : rule.mirror) {
+            for (const std::string& name : {object, image}) {
+                if (name != kEmptyName) {
+                    check_object(pointer + "/mirror/" + pointer_part(object), name);
+                }
+            }
+        }
+        if (faults_.size() > before || !is_size_good_) {
+            return;
+        }
+        const auto fault = find_symmetry_fault(
+            reading_.example(),
+            reading_.topes(),
+            rule,
+            make_planes(reading_, parameters_).offsets,
+            *parameters_.size
+        );
+        if (fault) {
+            faults_.push_back({pointer + fault->field, fault->detail});
         }
     }
 
@@ -220,6 +250,7 @@ class FaultFinder {
     const ExampleReading& reading_;
     const Parameters& parameters_;
     std::vector<Fault> faults_;
+    bool is_size_good_ = false;  // else there may be too many planes to look at
 };
 
 }  // namespace

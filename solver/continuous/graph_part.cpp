@@ -5,7 +5,12 @@
 
 namespace modelsynth::continuous {
 
-GraphPart part_of(const Arrangement& arrangement, std::vector<Site> vertices) {
+GraphPart part_of(
+    const Arrangement& arrangement, std::vector<Site> vertices, const Symmetries* symmetries
+) {
+    if (symmetries != nullptr) {
+        vertices = symmetries->close(std::move(vertices));
+    }
     const auto inside = [&](Site site) {
         const auto at = std::lower_bound(vertices.begin(), vertices.end(), site);
         return at != vertices.end() && *at == site ? static_cast<Site>(at - vertices.begin())
@@ -26,14 +31,18 @@ GraphPart part_of(const Arrangement& arrangement, std::vector<Site> vertices) {
             }
         }
     }
+    if (symmetries != nullptr) {
+        const std::vector<GraphArc> to_images = symmetries->arcs(vertices);
+        arcs.insert(arcs.end(), to_images.begin(), to_images.end());
+    }
     GraphTopology inner(vertices.size(), arcs);
     return {std::move(inner), std::move(vertices), std::move(outward)};
 }
 
-GraphPart part_of(const Arrangement& arrangement, const Box& cells) {
+GraphPart part_of(const Arrangement& arrangement, const Box& cells, const Symmetries* symmetries) {
     std::vector<Site> vertices;
     arrangement.for_each_vertex(cells, [&](Site site) { vertices.push_back(site); });
-    return part_of(arrangement, std::move(vertices));
+    return part_of(arrangement, std::move(vertices), symmetries);
 }
 
 }  // namespace modelsynth::continuous

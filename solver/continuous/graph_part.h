@@ -1,16 +1,22 @@
 #pragma once
 
 #include "solver/continuous/arrangement.h"
+#include "solver/continuous/symmetries.h"
 #include "solver/core/graph_topology.h"
 
 #include <vector>
 
 namespace modelsynth::continuous {
 
-// Vertices of an arrangement as a part to be made anew. Requires: in rising order, each once.
-[[nodiscard]] GraphPart part_of(const Arrangement& arrangement, std::vector<Site> vertices);
+// Vertices of an arrangement as a part to be made anew, with their images where there are
+// symmetries. Requires: in rising order, each once.
+[[nodiscard]] GraphPart part_of(
+    const Arrangement& arrangement, std::vector<Site> vertices, const Symmetries* symmetries
+);
 
 // Those of a box of cells.
-[[nodiscard]] GraphPart part_of(const Arrangement& arrangement, const Box& cells);
+[[nodiscard]] GraphPart part_of(
+    const Arrangement& arrangement, const Box& cells, const Symmetries* symmetries
+);
 
 }  // namespace modelsynth::continuous

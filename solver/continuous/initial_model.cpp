@@ -115,8 +115,9 @@ std::vector<Label> plain_labels(const ExampleReading& reading, const Arrangement
 }
 
 Result<std::vector<Label>> find_initial_labels(
-    const ExampleReading& reading,
+    const Relations& relations,
     const Arrangement& arrangement,
+    const Symmetries* symmetries,
     const SiteDomains& domains,
     const SiteWeights& weights,
     std::vector<Label> plain
@@ -134,7 +135,7 @@ Result<std::vector<Label>> find_initial_labels(
     if (is_plain) {
         return plain;
     }
-    BlockSearch<GraphPart> search(reading.relations(), domains, weights);
+    BlockSearch<GraphPart> search(relations, domains, weights);
     const PlainChooser chooser(plain);
     std::vector<Label> labels = plain;
     // What stands around is left alone as far as possible: cells are added twice as far each time.
@@ -148,7 +149,7 @@ Result<std::vector<Label>> find_initial_labels(
         options.order = Order::kMinEntropy;
         options.chooser = &chooser;
         const BlockResult result = search.modify(
-            part_of(arrangement, rough.vertices(arrangement)),
+            part_of(arrangement, rough.vertices(arrangement), symmetries),
             labels,
             options,
             {0, kInitialKey, 0, 0},

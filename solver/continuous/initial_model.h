@@ -2,6 +2,7 @@
 
 #include "solver/continuous/arrangement.h"
 #include "solver/continuous/reading.h"
+#include "solver/continuous/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
@@ -21,11 +22,12 @@ inline constexpr double kBelowGround = 0.25;
 );
 
 // A model to begin with that keeps to the domains: the plain labels, and where they do not fit,
-// what fits and is as plain as can be found.
+// what fits and is as plain as can be found. Symmetries may be null.
 // Fails: kContradiction with the place when it is proved that nothing fits, kGaveUp.
 [[nodiscard]] Result<std::vector<Label>> find_initial_labels(
-    const ExampleReading& reading,
+    const Relations& relations,
     const Arrangement& arrangement,
+    const Symmetries* symmetries,
     const SiteDomains& domains,
     const SiteWeights& weights,
     std::vector<Label> plain

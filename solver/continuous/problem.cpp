@@ -50,6 +50,26 @@ std::vector<Connection> connections_of(
     return connections;
 }
 
+std::unique_ptr<const Symmetries> symmetries_of(
+    const ExampleReading& reading, const Parameters& parameters, const Arrangement& arrangement
+) {
+    std::vector<SymmetryRule> rules;
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (const auto* rule = std::get_if<SymmetryRule>(&constraint.rule)) {
+            rules.push_back(*rule);
+        }
+    }
+    return rules.empty() ? nullptr
+                         : std::make_unique<const Symmetries>(
+                               reading.example(),
+                               reading.figures(),
+                               reading.relations(),
+                               arrangement,
+                               rules,
+                               *parameters.size
+                           );
+}
+
 }  // namespace
 
 Result<Problem> make_problem(
@@ -70,7 +90,18 @@ Result<Problem> make_problem(
     }
     std::vector<Label> plain = plain_labels(*reading, *arrangement);
     SiteDomains domains = make_domains(*reading, parameters, *arrangement, planes, plain);
-    auto initial = find_initial_labels(*reading, *arrangement, domains, *weights, std::move(plain));
+    auto symmetries = symmetries_of(*reading, parameters, *arrangement);
+    if (symmetries) {
+        symmetries->narrow(domains);
+    }
+    auto initial = find_initial_labels(
+        symmetries ? symmetries->relations() : reading->relations(),
+        *arrangement,
+        symmetries.get(),
+        domains,
+        *weights,
+        std::move(plain)
+    );
     if (!initial) {
         return tl::unexpected(std::move(initial.error()));
     }
@@ -84,7 +115,8 @@ Result<Problem> make_problem(
         std::move(*weights),
         std::move(*initial),
         std::move(homeless),
-        std::move(connections)};
+        std::move(connections),
+        std::move(symmetries)};
 }
 
 }  // namespace modelsynth::continuous

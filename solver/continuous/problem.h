@@ -5,6 +5,7 @@
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
+#include "solver/continuous/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
@@ -29,9 +30,15 @@ struct Problem {
     // Figures of the example that no vertex of the model can have.
     std::vector<Label> homeless;
     std::vector<Connection> connections;
+    std::unique_ptr<const Symmetries> symmetries;  // null: none
+
+    // Along edges, and to images.
+    [[nodiscard]] const Relations& relations() const {
+        return symmetries ? symmetries->relations() : reading->relations();
+    }
 };
 
-// Requires: every parameter has a value.
+// Requires: every parameter has a value, and find_faults() finds nothing.
 // Fails: kTooLarge, kInvalidArgument; see Arrangement::make() and make_weights(); kContradiction,
 // kGaveUp; see find_initial_labels().
 [[nodiscard]] Result<Problem> make_problem(

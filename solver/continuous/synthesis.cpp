@@ -5,6 +5,7 @@
 #include "solver/core/block_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -90,7 +91,7 @@ class Run {
           seed_(seed),
           observer_(observer),
           stop_(stop),
-          search_(problem.reading->relations(), problem.domains, problem.weights, &bases_),
+          search_(problem.relations(), problem.domains, problem.weights, &bases_),
           made_{problem.initial, {}} {
         for (const Connection& connection : problem.connections) {
             growing_.push_back(connection.figures);
@@ -143,7 +144,7 @@ class Run {
   private:
     // False when it was stopped.
     bool modify(const Box& block, std::uint32_t attempts) {
-        const GraphPart part = part_of(problem_.arrangement, block);
+        const GraphPart part = part_of(problem_.arrangement, block, problem_.symmetries.get());
         BlockOptions options;
         options.attempts = attempts;
         options.order = Order::kRandom;
@@ -163,7 +164,7 @@ class Run {
         if (result.outcome == BlockOutcome::kStopped) {
             return false;
         }
-        report(block, result);
+        report(problem_.symmetries ? cells_touched(part) : block, result);
         return true;
     }
 
@@ -215,6 +216,29 @@ class Run {
         }
         // Spread over the blocks to come.
         return there < components && random.below(total_ - index_) < components - there;
+    }
+
+    [[nodiscard]] Box cells_touched(const GraphPart& part) const {
+        const Arrangement::Frame& frame = problem_.arrangement.frame();
+        const GridSize& cells = frame.cells;
+        Box touched = {{cells.x - 1, cells.y - 1, cells.z - 1}, {1, 1, 1}};
+        for (const Site site : part.sites()) {
+            const Point at = problem_.arrangement.position(site) / frame.cell;
+            const auto along = [&](int axis, std::int32_t count) {
+                return static_cast<std::int32_t>(std::clamp(std::floor(at[axis]), 0.0, count - 1.0)
+                );
+            };
+            const Cell cell = {along(0, cells.x), along(1, cells.y), along(2, cells.z)};
+            touched.min = {
+                std::min(touched.min.x, cell.x),
+                std::min(touched.min.y, cell.y),
+                std::min(touched.min.z, cell.z)};
+            touched.max = {
+                std::max(touched.max.x, cell.x + 1),
+                std::max(touched.max.y, cell.y + 1),
+                std::max(touched.max.z, cell.z + 1)};
+        }
+        return touched;
     }
 
     [[nodiscard]] std::vector<Label> labels_of(const GraphPart& part) const {

@@ -5,6 +5,20 @@
 
 namespace modelsynth {
 
+std::string pointer_part(std::string_view name) {
+    std::string escaped;
+    for (const char c : name) {
+        if (c == '~') {
+            escaped += "~0";
+        } else if (c == '/') {
+            escaped += "~1";
+        } else {
+            escaped += c;
+        }
+    }
+    return escaped;
+}
+
 void check(bool condition, const char* why) {
     if (condition) {
         return;

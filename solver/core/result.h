@@ -5,6 +5,7 @@
 #include <any>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace modelsynth {
@@ -36,6 +37,9 @@ struct Error {
     // nothing.
     std::any explanation = {};
 };
+
+// A name as part of a JSON Pointer (RFC 6901).
+[[nodiscard]] std::string pointer_part(std::string_view name);
 
 template <class T>
 using Result = tl::expected<T, Error>;

@@ -29,15 +29,6 @@ void find_unknown_pieces(
     }
 }
 
-// A name as part of a JSON Pointer (RFC 6901).
-std::string escape_pointer(const std::string& name) {
-    std::string escaped;
-    for (const char c : name) {
-        escaped += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-    }
-    return escaped;
-}
-
 void find_boundary_faults(
     const Example& example,
     const LabelOfName& labels,
@@ -109,7 +100,7 @@ void find_symmetry_faults(
         for (const std::string& name : {piece, image}) {
             if (!labels.contains(name)) {
                 faults.push_back(
-                    {pointer + "/mirror/" + escape_pointer(piece),
+                    {pointer + "/mirror/" + pointer_part(piece),
                      "the example has no piece \"" + name + "\""}
                 );
             }
@@ -248,7 +239,7 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
         for (const auto& [name, weight] : *list) {
             if (!labels.contains(name)) {
                 faults.push_back(
-                    {"/weights/" + escape_pointer(name),
+                    {"/weights/" + pointer_part(name),
                      "the example has no piece \"" + name + "\""}
                 );
             }

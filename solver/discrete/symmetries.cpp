@@ -1,5 +1,6 @@
 #include "solver/discrete/symmetries.h"
 
+
 #include "solver/core/result.h"
 #include "solver/discrete/region.h"
 
@@ -54,25 +55,12 @@ std::int32_t wrapped(std::int32_t at, std::int32_t extent, bool is_periodic) {
     return is_periodic ? (at % extent + extent) % extent : at;
 }
 
-Relations with_images(
-    const Relations& of_grid, const std::vector<Symmetries::Generator>& generators
-) {
-    std::vector<RelationId> reverse;
-    for (std::size_t r = 0; r < of_grid.count() + 2 * generators.size(); ++r) {
-        reverse.push_back(static_cast<RelationId>(r ^ 1U));
+std::vector<std::vector<Label>> images_of(const std::vector<Symmetries::Generator>& generators) {
+    std::vector<std::vector<Label>> images;
+    for (const Symmetries::Generator& generator : generators) {
+        images.push_back(generator.labels);
     }
-    Relations relations(of_grid.label_count(), std::move(reverse));
-    for (std::size_t label = 0; label < of_grid.label_count(); ++label) {
-        const auto near = static_cast<Label>(label);
-        for (RelationId r = 0; r < of_grid.count(); r += 2) {
-            for_each_label(of_grid.row(r, near), [&](Label far) { relations.allow(r, near, far); });
-        }
-        for (std::size_t g = 0; g < generators.size(); ++g) {
-            const auto to_image = static_cast<RelationId>(of_grid.count() + 2 * g);
-            relations.allow(to_image, near, generators[g].labels[label]);
-        }
-    }
-    return relations;
+    return images;
 }
 
 }  // namespace
@@ -135,29 +123,6 @@ std::optional<Site> CellMap::moved(Site site, bool backwards) const {
     return image;
 }
 
-std::vector<Label> label_images(
-    std::size_t label_count, std::span<const std::pair<Label, Label>> given
-) {
-    std::vector<Label> images(label_count, kNoLabel);
-    std::vector<Label> origins(label_count, kNoLabel);
-    for (const auto& [from, to] : given) {
-        images[from] = to;
-        origins[to] = from;
-    }
-    for (std::size_t i = 0; i < label_count; ++i) {
-        const auto label = static_cast<Label>(i);
-        if (images[label] == kNoLabel) {
-            Label beginning = label;
-            while (origins[beginning] != kNoLabel) {
-                beginning = origins[beginning];
-            }
-            images[label] = beginning;
-            origins[beginning] = label;
-        }
-    }
-    return images;
-}
-
 std::optional<SymmetryFault> find_symmetry_fault(
     const Symmetry& symmetry,
     const Region& region,
@@ -175,25 +140,8 @@ std::optional<SymmetryFault> find_symmetry_fault(
     if (symmetry.translation == Cell{} && symmetry.kind == Symmetry::Kind::kTranslate) {
         return SymmetryFault{field_of(symmetry.kind), "is no step away"};
     }
-    LabelSet reached(label_count);
-    for (const auto& [from, to] : given) {
-        if (reached.contains(to)) {
-            return SymmetryFault{"/mirror", "two pieces have the same image"};
-        }
-        reached.insert(to);
-    }
-    const std::size_t order = order_of(symmetry.kind);
-    const std::vector<Label> images = label_images(label_count, given);
-    for (std::size_t label = 0; order > 0 && label < label_count; ++label) {
-        auto moved = static_cast<Label>(label);
-        for (std::size_t i = 0; i < order; ++i) {
-            moved = images[moved];
-        }
-        if (moved != label) {
-            return SymmetryFault{
-                "/mirror",
-                "a piece does not come back to itself after " + std::to_string(order) + " steps"};
-        }
+    if (auto fault = find_image_fault(label_count, given, order_of(symmetry.kind))) {
+        return SymmetryFault{"/mirror", std::move(*fault)};
     }
     return std::nullopt;
 }
@@ -205,7 +153,7 @@ Symmetries::Symmetries(
     std::vector<Generator> generators
 )
     : whole_(size, periodic),
-      relations_(with_images(of_grid, generators)),
+      relations_(relations_with_images(of_grid, images_of(generators))),
       generators_(std::move(generators)) {
     check(!generators_.empty(), "symmetries without any");
 }

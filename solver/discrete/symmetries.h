@@ -3,6 +3,7 @@
 #include "solver/core/graph_topology.h"
 #include "solver/core/grid.h"
 #include "solver/core/grid_topology.h"
+#include "solver/core/label_images.h"
 #include "solver/core/label_set.h"
 #include "solver/core/relations.h"
 #include "solver/discrete/parameters.h"
@@ -47,14 +48,6 @@ class CellMap {
     bool is_involution_;
     std::vector<std::uint8_t> applies_;  // by cell; empty: everywhere
 };
-
-// The images of all labels: those given, and each label itself where nothing is. Labels of a chain
-// a to b to c that does not say where it ends, go on from its end to its beginning, so that a pair
-// is named once.
-// Shape: by label. Requires: as CellMap.
-[[nodiscard]] std::vector<Label> label_images(
-    std::size_t label_count, std::span<const std::pair<Label, Label>> given
-);
 
 // What is wrong with a symmetry, and with which of its fields ("/rotate"): a quarter turn of what
 // is not as wide as deep, images that are no one-to-one map or do not come back as the cells do.

@@ -320,7 +320,10 @@ void expect_counted(
     Connections anew(problem.reading->figures(), skeleton, free);
     followed.start(observer.initial_model);
     for (std::size_t i = 0; i < observer.models.size(); ++i) {
-        followed.enter(part_of(problem.arrangement, observer.reports[i].region).sites());
+        followed.enter(
+            part_of(problem.arrangement, observer.reports[i].region, problem.symmetries.get())
+                .sites()
+        );
         ASSERT_TRUE(followed.accepts(observer.models[i]));
         anew.start(observer.models[i]);
         for (std::size_t c = 0; c < free.size(); ++c) {
