@@ -178,9 +178,11 @@ void write_symmetry(const SymmetryRule& rule, OrderedJson& written) {
             written["translate"] = rule.translation;
             break;
     }
-    written["mirror"] = OrderedJson::object();
-    for (const auto& [object, image] : rule.mirror) {
-        written["mirror"][object] = image;
+    if (rule.mirror) {
+        written["mirror"] = OrderedJson::object();
+        for (const auto& [object, image] : *rule.mirror) {
+            written["mirror"][object] = image;
+        }
     }
 }
 

@@ -68,6 +68,8 @@ struct ProbabilityRule {
     friend bool operator==(const ProbabilityRule&, const ProbabilityRule&) = default;
 };
 
+using NamePairs = std::vector<std::pair<std::string, std::string>>;
+
 // What stands at a place stands at the place's image, too, turned or mirrored as the place is
 // (2007 paper, 4.1). Reflections and turns are about the upright line through the middle of the
 // model.
@@ -76,8 +78,9 @@ struct SymmetryRule {
 
     Kind kind = Kind::kReflectX;             // a quarter turn: from the east to the north
     std::array<double, 3> translation = {};  // for kTranslate, metres
-    // Objects and their images; see label_images() for those that are not named.
-    std::vector<std::pair<std::string, std::string>> mirror = {};
+    // Objects and their images; see label_images() for those that are not named. None: found, see
+    // likely_mirror().
+    std::optional<NamePairs> mirror = std::nullopt;
 
     friend bool operator==(const SymmetryRule&, const SymmetryRule&) = default;
 };

@@ -2,7 +2,7 @@
 
 #include "solver/continuous/model_planes.h"
 #include "solver/continuous/reading.h"
-#include "solver/continuous/symmetries.h"
+#include "solver/continuous/symmetry/symmetry_fault.h"
 
 #include <Eigen/Geometry>
 
@@ -130,7 +130,7 @@ class FaultFinder {
 
     void check_symmetry(const std::string& pointer, const SymmetryRule& rule) {
         const std::size_t before = faults_.size();
-        for (const auto& [object, image] : rule.mirror) {
+        for (const auto& [object, image] : rule.mirror.value_or(NamePairs())) {
             for (const std::string& name : {object, image}) {
                 if (name != kEmptyName) {
                     check_object(pointer + "/mirror/" + pointer_part(object), name);
@@ -141,11 +141,7 @@ class FaultFinder {
             return;
         }
         const auto fault = find_symmetry_fault(
-            reading_.example(),
-            reading_.topes(),
-            rule,
-            make_planes(reading_, parameters_).offsets,
-            *parameters_.size
+            reading_, rule, make_planes(reading_, parameters_).offsets, *parameters_.size
         );
         if (fault) {
             faults_.push_back({pointer + fault->field, fault->detail});

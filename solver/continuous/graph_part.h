@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/continuous/arrangement.h"
-#include "solver/continuous/symmetries.h"
+#include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/graph_topology.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "solver/continuous/arrangement.h"
 #include "solver/continuous/reading.h"
-#include "solver/continuous/symmetries.h"
+#include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"

@@ -1,6 +1,8 @@
 #include "solver/continuous/model_planes.h"
 
 #include "solver/continuous/initial_model.h"
+#include "solver/continuous/symmetry/motion.h"
+#include "solver/continuous/symmetry/plane_images.h"
 
 #include <algorithm>
 #include <array>
@@ -20,15 +22,16 @@ struct NumberedPlanes {
     std::int64_t first_number = 0;
 };
 
-NumberedPlanes spaced_planes(const Reach& reach, double spacing) {
+NumberedPlanes spaced_planes(const Reach& reach, double through, double spacing) {
     NumberedPlanes planes;
-    for (double k = std::floor(reach.low / spacing); k * spacing < reach.high - 1e-9 * spacing;
-         ++k) {
-        if (k * spacing > reach.low + 1e-9 * spacing) {
+    const double tolerance = 1e-9 * spacing;
+    double k = std::floor((reach.low - through) / spacing);
+    for (; through + k * spacing < reach.high - tolerance; ++k) {
+        if (through + k * spacing > reach.low + tolerance) {
             if (planes.offsets.empty()) {
                 planes.first_number = std::llround(k);
             }
-            planes.offsets.push_back(k * spacing);
+            planes.offsets.push_back(through + k * spacing);
         }
     }
     return planes;
@@ -70,6 +73,59 @@ void put_ground(double tolerance, PlaneOffsets& offsets) {
     offsets.push_back(0);
 }
 
+// Whether the planes are their own image under every reflection and turn asked for.
+bool are_symmetric(
+    const ExampleReading& reading, const Parameters& parameters, const ModelPlanes& planes
+) {
+    const Topes& topes = reading.topes();
+    for (const Constraint& constraint : *parameters.constraints) {
+        const auto* rule = std::get_if<SymmetryRule>(&constraint.rule);
+        if (rule == nullptr || rule->kind == SymmetryRule::Kind::kTranslate) {
+            continue;
+        }
+        const Motion motion = motion_of(*rule, *parameters.size);
+        for (std::size_t family = 0; family < topes.family_count(); ++family) {
+            if (!family_image(topes, family, motion.turn) ||
+                plane_without_image(topes, family, motion, planes.offsets, *parameters.size)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+ModelPlanes planes_through(
+    const Point& point, const ExampleReading& reading, const Parameters& parameters
+) {
+    const std::span<const Point> normals = reading.topes().normals();
+    const Bounds box = model_box(reading, parameters);
+    const double tolerance = kOffsetTolerance * (box.max - box.min).maxCoeff();
+    ModelPlanes planes;
+    planes.spacings = spacings_of(reading, parameters);
+    const auto add = [&planes](NumberedPlanes of_family, std::size_t family) {
+        planes.offsets[family] = std::move(of_family.offsets);
+        planes.first_number[family] = of_family.first_number;
+    };
+    planes.offsets.resize(normals.size());
+    planes.first_number.resize(normals.size());
+    for (std::size_t family = 0; family < normals.size(); ++family) {
+        if (const double spacing = planes.spacings.of_family[family]; spacing > 0) {
+            const Point& normal = normals[family];
+            add(spaced_planes(reach_along(normal, box), normal.dot(point), spacing), family);
+        }
+    }
+    for (const FamilyOffsets& asked : parameters.offsets) {
+        const std::size_t family = family_of(reading, asked.normal);
+        PlaneOffsets offsets = along_family(asked, normals[family]);
+        if (reading.example().ground && family == reading.horizontal()) {
+            put_ground(tolerance, offsets);
+        }
+        add(listed_planes(std::move(offsets), reach_along(normals[family], box), tolerance),
+            family);
+    }
+    return planes;
+}
+
 }  // namespace
 
 Bounds model_box(const ExampleReading& reading, const Parameters& parameters) {
@@ -106,30 +162,14 @@ Spacings spacings_of(const ExampleReading& reading, const Parameters& parameters
 }
 
 ModelPlanes make_planes(const ExampleReading& reading, const Parameters& parameters) {
-    const std::span<const Point> normals = reading.topes().normals();
-    const Bounds box = model_box(reading, parameters);
-    const double tolerance = kOffsetTolerance * (box.max - box.min).maxCoeff();
-    ModelPlanes planes;
-    planes.spacings = spacings_of(reading, parameters);
-    const auto add = [&planes](NumberedPlanes of_family, std::size_t family) {
-        planes.offsets[family] = std::move(of_family.offsets);
-        planes.first_number[family] = of_family.first_number;
-    };
-    planes.offsets.resize(normals.size());
-    planes.first_number.resize(normals.size());
-    for (std::size_t family = 0; family < normals.size(); ++family) {
-        if (const double spacing = planes.spacings.of_family[family]; spacing > 0) {
-            add(spaced_planes(reach_along(normals[family], box), spacing), family);
+    ModelPlanes planes = planes_through(Point::Zero(), reading, parameters);
+    if (!are_symmetric(reading, parameters, planes)) {
+        const std::array<double, 3>& size = *parameters.size;
+        ModelPlanes others =
+            planes_through(Point(size[0] / 2, 0, size[2] / 2), reading, parameters);
+        if (are_symmetric(reading, parameters, others)) {
+            return others;
         }
-    }
-    for (const FamilyOffsets& asked : parameters.offsets) {
-        const std::size_t family = family_of(reading, asked.normal);
-        PlaneOffsets offsets = along_family(asked, normals[family]);
-        if (reading.example().ground && family == reading.horizontal()) {
-            put_ground(tolerance, offsets);
-        }
-        add(listed_planes(std::move(offsets), reach_along(normals[family], box), tolerance),
-            family);
     }
     return planes;
 }

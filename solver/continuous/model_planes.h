@@ -11,12 +11,14 @@
 
 namespace modelsynth::continuous {
 
-// Where the planes of a model lie: equally spaced ones through the origin, or those of a list.
+// Where the planes of a model lie: equally spaced ones through one point, or those of a list. The
+// point is the origin, or where a reflection or turn asks for that, on the line that they are
+// about.
 struct ModelPlanes {
     Spacings spacings;
     // By family, inside of the box.
     std::vector<PlaneOffsets> offsets;
-    // By family, the number of the first of these: the plane through the origin is number 0, or
+    // By family, the number of the first of these: the plane through that point is number 0, or
     // the first one of the list, be it inside of the box or not. The others follow.
     std::vector<std::int64_t> first_number;
 };

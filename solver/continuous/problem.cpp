@@ -59,15 +59,9 @@ std::unique_ptr<const Symmetries> symmetries_of(
             rules.push_back(*rule);
         }
     }
-    return rules.empty() ? nullptr
-                         : std::make_unique<const Symmetries>(
-                               reading.example(),
-                               reading.figures(),
-                               reading.relations(),
-                               arrangement,
-                               rules,
-                               *parameters.size
-                           );
+    return rules.empty()
+               ? nullptr
+               : std::make_unique<const Symmetries>(reading, arrangement, rules, *parameters.size);
 }
 
 }  // namespace

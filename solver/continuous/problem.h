@@ -5,7 +5,7 @@
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
-#include "solver/continuous/symmetries.h"
+#include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"

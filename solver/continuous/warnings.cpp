@@ -42,6 +42,14 @@ std::vector<std::string> warnings_of(const Problem& problem) {
     for (const auto& [families, count] : without) {
         warnings.push_back(without_place(count, figures.count(), families));
     }
+    if (problem.symmetries && problem.symmetries->imageless() > 0) {
+        const std::size_t some = problem.symmetries->imageless();
+        warnings.push_back(
+            std::to_string(some) + " of " + std::to_string(figures.count()) +
+            (some == 1 ? " figures is left out: the example does not have its image"
+                       : " figures are left out: the example does not have their images")
+        );
+    }
     const std::vector<std::string>& conflicts = problem.spacings.conflicts;
     warnings.insert(warnings.end(), conflicts.begin(), conflicts.end());
     if (warnings.size() > kWarningsMax) {

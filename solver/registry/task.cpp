@@ -5,6 +5,7 @@
 #include "solver/continuous/reading.h"
 #include "solver/continuous/scene.h"
 #include "solver/continuous/surface.h"
+#include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/continuous/warnings.h"
 #include "solver/discrete/analysis/infallibility.h"
@@ -120,9 +121,11 @@ Parameters with_defaults(const Parameters& parameters, const Example& example) {
                 return filled;
             },
             [&](const Solids& solids) -> Parameters {
-                return continuous::fill_defaults(
+                continuous::Parameters filled = continuous::fill_defaults(
                     std::get<continuous::Parameters>(parameters), solids->example()
                 );
+                continuous::fill_mirrors(*solids, filled);
+                return filled;
             }},
         example
     );

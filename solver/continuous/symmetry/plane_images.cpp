@@ -1,0 +1,55 @@
+#include "solver/continuous/symmetry/plane_images.h"
+
+#include <algorithm>
+
+namespace modelsynth::continuous {
+
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // of the model's extent
+
+}  // namespace
+
+std::optional<FamilyImage> family_image(
+    const Topes& topes, std::size_t family, const Eigen::Matrix3d& turn
+) {
+    const Point normal = turn * topes.normals()[family];
+    const auto image = topes.find_family(normal);
+    if (!image) {
+        return std::nullopt;
+    }
+    return FamilyImage{*image, normal.dot(topes.normals()[*image]) < 0};
+}
+
+std::optional<double> plane_without_image(
+    const Topes& topes,
+    std::size_t family,
+    const Motion& motion,
+    std::span<const PlaneOffsets> planes,
+    const std::array<double, 3>& size
+) {
+    const FamilyImage image = family_image(topes, family, motion.turn).value();
+    const Point& normal = topes.normals()[image.family];
+    const double sign = image.is_turned_round ? -1 : 1;
+    const PlaneOffsets& others = planes[image.family];
+    double low = 0;
+    double high = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double reach = normal[axis] * size[static_cast<std::size_t>(axis)];
+        low += std::min(0.0, reach);
+        high += std::max(0.0, reach);
+    }
+    const double tolerance = kSamePlace * (high - low);
+    for (const double offset : planes[family]) {
+        const double moved = sign * offset + normal.dot(motion.shift);
+        const auto next = std::lower_bound(others.begin(), others.end(), moved - tolerance);
+        const bool is_plane = next != others.end() && *next < moved + tolerance;
+        const bool is_inside = moved > low + tolerance && moved < high - tolerance;
+        if (is_inside && !is_plane) {
+            return offset;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace modelsynth::continuous

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "solver/continuous/arrangement.h"
+#include "solver/continuous/symmetry/motion.h"
+#include "solver/continuous/topes.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace modelsynth::continuous {
+
+// The family that a family's planes become, and whether its normal turns round.
+struct FamilyImage {
+    std::size_t family = 0;
+    bool is_turned_round = false;
+};
+
+// Nothing where the example has no faces of that normal.
+[[nodiscard]] std::optional<FamilyImage> family_image(
+    const Topes& topes, std::size_t family, const Eigen::Matrix3d& turn
+);
+
+// The first plane of a family, by offset, whose image is in the model and no plane of it.
+// Shape: `planes` has the offsets of every family's planes, in rising order; `size` is the model's
+// in metres. Requires: the family has an image.
+[[nodiscard]] std::optional<double> plane_without_image(
+    const Topes& topes,
+    std::size_t family,
+    const Motion& motion,
+    std::span<const PlaneOffsets> planes,
+    const std::array<double, 3>& size
+);
+
+}  // namespace modelsynth::continuous
