@@ -32,6 +32,7 @@ struct RequestLimits {
     std::size_t tags_max = 32;
     std::size_t constraints_max = 1000;
     std::size_t member_rules_max = 32;  // constraints that take memory for every cell
+    std::size_t symmetries_max = 8;     // take memory for every cell, too
     std::size_t masks_max = 16;
     std::int32_t resemblance_window_max = 3;  // cells; its cost goes with the cube
     std::size_t terms_max = 16;               // of one objective

@@ -90,15 +90,25 @@ std::optional<std::vector<Value>> constraint_values(
     const Value& list, const RequestLimits& limits
 ) {
     auto values = list.array(0, limits.constraints_max);
+    const auto more_than = [&](std::size_t most, const char* what, const char* limit, auto is_one) {
+        const bool is_more = values && std::count_if(values->begin(), values->end(), is_one) >
+                                           static_cast<std::ptrdiff_t>(most);
+        if (is_more) {
+            list.fault(
+                "has more than " + std::to_string(most) + " " + what + "; the limit is " + limit,
+                true
+            );
+        }
+        return is_more;
+    };
     const auto has_mask = [](const Value& one) {
         return one.json().is_object() && one.json().contains("mask");
     };
-    if (values && std::count_if(values->begin(), values->end(), has_mask) >
-                      static_cast<std::ptrdiff_t>(limits.masks_max)) {
-        list.fault(
-            "has more than " + std::to_string(limits.masks_max) + " masks; the limit is masks_max",
-            true
-        );
+    const auto is_symmetry = [](const Value& one) {
+        return one.json().is_object() && one.json().value("kind", Json()) == "symmetry";
+    };
+    if (more_than(limits.masks_max, "masks", "masks_max", has_mask) ||
+        more_than(limits.symmetries_max, "symmetries", "symmetries_max", is_symmetry)) {
         return std::nullopt;
     }
     return values;

@@ -18,8 +18,8 @@ namespace modelsynth::proto {
 // Puts the fields of a region with what is written of the object.
 void write_region(const discrete::Region& region, OrderedJson& written);
 
-// The elements of a list of constraints, when there are neither too many nor too many masks in
-// them, which are counted before any is unpacked.
+// The elements of a list of constraints, when there are not too many of them, nor of the masks and
+// symmetries among them, which are counted before any is unpacked.
 [[nodiscard]] std::optional<std::vector<Value>> constraint_values(
     const Value& list, const RequestLimits& limits
 );

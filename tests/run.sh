@@ -79,8 +79,8 @@ step format
 # shellcheck disable=SC2046
 must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 
-programs=(solver_tests wire_tests cli_tests property_tests fuzz_tests golden_tests store_tests
-  jobs_tests)
+programs=(solver_tests thread_tests wire_tests cli_tests property_tests fuzz_tests golden_tests
+  store_tests jobs_tests)
 build release all && {
   unit release "${programs[@]}"
   beside service release tests/layout tests/service
@@ -95,11 +95,11 @@ if ! $quick; then
     beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
       tests/service/test_examples_api.py tests/service/test_crash.py
   }
-  build tsan solver_tests store_tests jobs_tests modelsynthd
+  build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
   join
   [ $built -eq 0 ] && {
-    unit tsan solver_tests store_tests jobs_tests
+    unit tsan thread_tests store_tests jobs_tests
     service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py
   }

@@ -115,6 +115,14 @@ class Run {
             }
             schedule = std::move(*cut);
         }
+        if (problem_.symmetries) {
+            const double cell = problem_.arrangement.frame().cell;
+            std::erase_if(schedule, [&](const Box& block) {
+                return problem_.symmetries->is_filled_by_images(
+                    cell * Point(block.min.x, block.min.y, block.min.z)
+                );
+            });
+        }
         if (connections_) {
             order_outwards(schedule, cells);
         }

@@ -223,6 +223,9 @@ Result<Finished> run_continuous(
     }
     made->stats.polygons = continuous::make_surface(**problem, made->labels).polygons.size();
     made->stats.warnings = continuous::warnings_of(**problem);
+    if (made->stats.changed == 0) {
+        made->stats.warnings.emplace_back("nothing fits but what the model began as");
+    }
     return Finished{{make_vertex_space(*problem), std::move(made->labels)}, std::move(made->stats)};
 }
 

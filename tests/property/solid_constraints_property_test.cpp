@@ -2,9 +2,11 @@
 // MODELSYNTH_SOLID_CASES asks for a longer run.
 
 #include "solver/continuous/connections.h"
+#include "solver/continuous/faults.h"
 #include "solver/continuous/graph_part.h"
 #include "solver/continuous/skeleton.h"
 #include "solver/continuous/surface.h"
+#include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/examples.h"
@@ -20,6 +22,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string>
@@ -61,6 +64,9 @@ class RequestMaker {
     }
 
     Parameters make() {
+        if (chance_.below(3) == 0) {
+            extent_[2] = extent_[0];  // for quarter turns
+        }
         Parameters parameters;
         parameters.size = {1.0 * extent_[0], 1.0 * extent_[1], 1.0 * extent_[2]};
         parameters.density = 0.3 + 0.7 * chance_.share();
@@ -80,7 +86,10 @@ class RequestMaker {
 
   private:
     Constraint constraint() {
-        switch (chance_.below(8)) {
+        switch (chance_.below(10)) {
+            case 8:
+            case 9:
+                return {symmetry()};
             case 0: {
                 const std::span<const Point> normals = reading_.topes().normals();
                 const Point& n =
@@ -104,6 +113,20 @@ class RequestMaker {
             default:
                 return {ProbabilityRule{4 * chance_.share()}, objects(false), region()};
         }
+    }
+
+    SymmetryRule symmetry() {
+        SymmetryRule rule;
+        rule.kind = static_cast<SymmetryRule::Kind>(chance_.below(5));
+        if (rule.kind == SymmetryRule::Kind::kTranslate) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                rule.translation[axis] = chance_.below(2 * extent_[axis]) - extent_[axis];
+            }
+        }
+        if (chance_.below(3) == 0) {
+            rule.mirror = {{object(false), object(false)}};
+        }
+        return rule;
     }
 
     std::string object(bool may_be_empty) {
@@ -222,6 +245,8 @@ class ModelLooker {
             EXPECT_LE(places_.pieces(objects_of(constraint, example_)), connected->components);
         } else if (const auto* dimension = std::get_if<DimensionRule>(&constraint.rule)) {
             expect_dimension(constraint, *dimension, chance);
+        } else if (const auto* symmetry = std::get_if<SymmetryRule>(&constraint.rule)) {
+            expect_symmetry(*symmetry, chance);
         } else {
             expect_region(constraint, chance);
         }
@@ -244,6 +269,37 @@ class ModelLooker {
         });
     }
 
+    // What stands at a place's image is the image of what stands there.
+    void expect_symmetry(const SymmetryRule& rule, Chance& chance) const {
+        std::vector<ObjectId> images(example_.objects.size() + 1);
+        std::iota(images.begin(), images.end(), ObjectId{0});
+        for (const auto& [object, image] :
+             rule.mirror ? *rule.mirror : likely_mirror(*problem_.reading, rule)) {
+            images[find_object(example_, object)] = find_object(example_, image);
+            ObjectId& back = images[find_object(example_, image)];
+            back = back == find_object(example_, image) ? find_object(example_, object) : back;
+        }
+        const Eigen::AlignedBox3d box = places_.set().frame().clip;
+        const Point middle(box.center().x(), 0, box.center().z());
+        for (int i = 0; i < 200; ++i) {
+            const Point share(chance.share(), chance.share(), chance.share());
+            const Point place = box.min() + share.cwiseProduct(box.sizes());
+            const Point from_middle = place - middle;
+            const std::array<Point, 5> moved = {
+                middle + Point(-from_middle.x(), place.y(), from_middle.z()),
+                middle + Point(from_middle.x(), place.y(), -from_middle.z()),
+                middle + Point(-from_middle.x(), place.y(), -from_middle.z()),
+                middle + Point(from_middle.z(), place.y(), -from_middle.x()),
+                place + Point(rule.translation[0], rule.translation[1], rule.translation[2])};
+            const Point& there = moved.at(static_cast<std::size_t>(rule.kind));
+            // Below y = 0 the ground stands for good.
+            if (box.contains(there) && place.y() > 0 && there.y() > 0) {
+                EXPECT_EQ(int{places_.at(there)}, int{images[places_.at(place)]})
+                    << "image of " << place.transpose();
+            }
+        }
+    }
+
     // At the planes of the normal an object goes on where it may and ends where it has to.
     void expect_dimension(const Constraint& constraint, const DimensionRule& rule, Chance& chance)
         const {
@@ -252,6 +308,11 @@ class ModelLooker {
         const auto family = *problem_.reading->topes().find_family(normal);
         const double spacing = problem_.spacings.of_family[family];
         const Eigen::AlignedBox3d box = places_.set().frame().clip;
+        const PlaneOffsets& planes = problem_.arrangement.planes(family);
+        const double from_origin = planes.empty() ? 0 : planes.front() / spacing;
+        if (std::abs(from_origin - std::round(from_origin)) > 1e-6) {
+            return;  // they pass through the middle of a symmetric model, not the origin
+        }
         for (int i = 0; i < 400; ++i) {
             const Point share(chance.share(), chance.share(), chance.share());
             Point place = box.min() + share.cwiseProduct(box.sizes());
@@ -356,7 +417,10 @@ enum class Ending : std::uint8_t { kModel, kContradiction, kGaveUp, kNoModel };
 
 Ending expect_constraints_hold(const Reading& reading, std::uint64_t seed, int extent_max) {
     RequestMaker maker(*reading, seed + 1000, extent_max);
-    const Parameters parameters = maker.make();
+    Parameters parameters = maker.make();
+    while (!find_faults(*reading, parameters).empty()) {  // symmetries that cannot be
+        parameters = maker.make();
+    }
     const auto problem = make_problem(reading, parameters);
     if (!problem) {
         const ErrorCode code = problem.error().code;

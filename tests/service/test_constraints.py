@@ -245,6 +245,17 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
     assert_faults(server.request("POST", "/v1/jobs", request), request, ["/parameters/constraints"])
 
 
+def test_the_number_of_symmetries_is_limited(server):
+    one = {"kind": "symmetry", "reflect": "x"}
+    example = anything_goes("red", "green")
+    job = make_job(server, {"constraints": [one] * 8}, example=example)
+    assert job["state"] == "succeeded"
+    request = job_request({"constraints": [one] * 9}, example=example)
+    answer = server.request("POST", "/v1/jobs", request)
+    problem = assert_faults(answer, request, ["/parameters/constraints"])
+    assert problem["type"] == "/problems/too-large"
+
+
 def test_masks_are_limited_in_size_and_number(server):
     fits = {"kind": "probability", **RED, "weight": 1, "mask": grey_png([[0] * 1024])}
     assert make_job(server, {"constraints": [fits] * 16})["state"] == "succeeded"

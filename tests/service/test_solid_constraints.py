@@ -77,6 +77,9 @@ CONSTRAINTS = {
     "forbidden": ({"kind": "forbidden", "objects": ["wall"], "mask": IMAGE}, {}),
     "probability": ({"kind": "probability", "objects": ["wall", "roof"], "weight": 0.25,
                      "voxels": {"size": [2, 1, 1], "values": [1, 0.5]}}, {}),
+    "reflection": ({"kind": "symmetry", "reflect": "z"}, {"mirror": {}}),
+    "turn": ({"kind": "symmetry", "rotate": 2, "mirror": {"wall": "wall"}}, {}),
+    "translation": ({"kind": "symmetry", "translate": [5, 0, 0]}, {"mirror": {}}),
 }
 
 
@@ -127,6 +130,20 @@ def test_what_may_not_be_in_the_west_is_in_the_east(server, rule, region):
     assert min(x for x, _, _ in free) < 6
 
 
+@pytest.mark.parametrize("rule,moved", [
+    ({"reflect": "x"}, lambda x, z: (12 - x, z)),
+    ({"reflect": "z"}, lambda x, z: (x, 12 - z)),
+    ({"rotate": 2}, lambda x, z: (12 - x, 12 - z)),
+], ids=str)
+def test_corners_have_their_image(server, rule, moved):
+    walls = corners_of(server, make(server, request_of([{"kind": "symmetry", **rule}])), "wall")
+    corners = {(round(x, 3), round(y, 3), round(z, 3)) for x, y, z in walls}
+    assert len(corners) > 8
+    for x, y, z in corners:
+        there_x, there_z = moved(x, z)
+        assert (round(there_x, 3), y, round(there_z, 3)) in corners
+
+
 def test_what_the_example_says_hangs_together_does_unless_it_is_told_otherwise(server):
     def pieces(constraints):
         job = make(server, request_of(constraints, BLOCKS))
@@ -162,12 +179,24 @@ def test_what_the_example_says_hangs_together_does_unless_it_is_told_otherwise(s
     ({"kind": "dimension", "object": "empty", "normal": [1, 0, 0]}, ["object"]),
     ({"kind": "dimension", "objects": ["wall"], "normal": [1, 0, 0]}, ["object", "objects"]),
     ({"kind": "path", "objects": ["wall"]}, ["kind"]),
+    ({"kind": "symmetry"}, [""]),
+    ({"kind": "symmetry", "reflect": "x", "rotate": 2}, [""]),
+    ({"kind": "symmetry", "reflect": "y"}, ["reflect"]),
+    ({"kind": "symmetry", "rotate": 3}, ["rotate"]),
+    ({"kind": "symmetry", "translate": [1, 0]}, ["translate"]),
+    ({"kind": "symmetry", "translate": [0, 0, 0]}, ["translate"]),
+    ({"kind": "symmetry", "translate": [0.5, 0, 0]}, ["translate"]),
+    ({"kind": "symmetry", "reflect": "x", "objects": ["wall"]}, ["objects"]),
+    ({"kind": "symmetry", "reflect": "x", "box": WEST}, ["box"]),
+    ({"kind": "symmetry", "reflect": "x", "mirror": ["wall"]}, ["mirror"]),
+    ({"kind": "symmetry", "reflect": "x", "mirror": {"wall": 1}}, ["mirror/wall"]),
+    ({"kind": "symmetry", "reflect": "x", "mirror": {"wall": "door"}}, ["mirror/wall"]),
     ({"objects": ["wall"]}, ["kind"]),
 ], ids=str)
 def test_what_cannot_be_asked_for(server, constraint, pointers):
     request = request_of([{"kind": "connected", "objects": ["wall"]}, constraint])
     assert_faults(server.request("POST", "/v1/jobs", request), request,
-                  [f"/parameters/constraints/1/{pointer}" for pointer in pointers])
+                  [f"/parameters/constraints/1/{pointer}".rstrip("/") for pointer in pointers])
 
 
 def test_faults_are_told_at_the_place_of_their_constraint(server):
@@ -181,7 +210,8 @@ def test_faults_are_told_at_the_place_of_their_constraint(server):
 @pytest.mark.parametrize("constraint,most", [
     ({"kind": "connected", "objects": ["wall"]}, 32),
     ({"kind": "forbidden", "objects": ["wall"], "mask": IMAGE}, 16),
-], ids=["connected", "masks"])
+    ({"kind": "symmetry", "reflect": "x"}, 8),
+], ids=["connected", "masks", "symmetries"])
 def test_more_than_the_limit_is_too_large(server, constraint, most):
     request = request_of([constraint] * (most + 1))
     answer = server.request("POST", "/v1/jobs", request)

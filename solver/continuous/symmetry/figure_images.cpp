@@ -5,6 +5,8 @@
 #include "solver/core/label_images.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -56,11 +58,14 @@ class FigureMover {
 // A map of objects on its way to more figures that have images.
 class MirrorSearch {
   public:
-    MirrorSearch(const Figures& figures, const SymmetryRule& rule, std::size_t objects)
-        : mover_(figures, rule), figures_with_(objects), has_image_(figures.count()) {
-        for (std::size_t object = 0; object < objects; ++object) {
-            images_.push_back(static_cast<Label>(object));
-        }
+    MirrorSearch(const ExampleReading& reading, const SymmetryRule& rule)
+        : ground_(reading.example().ground),
+          mover_(reading.figures(), rule),
+          figures_with_(reading.example().objects.size() + 1),
+          has_image_(reading.figures().count()),
+          images_(figures_with_.size()) {
+        std::iota(images_.begin(), images_.end(), Label{0});
+        const Figures& figures = reading.figures();
         for (std::size_t l = 0; l < figures.count(); ++l) {
             const auto label = static_cast<Label>(l);
             has_image_[l] = mover_.image(label, images_) != kNoLabel;
@@ -117,6 +122,9 @@ class MirrorSearch {
   private:
     // How many figures more would have images.
     [[nodiscard]] std::ptrdiff_t gain_of(std::size_t a, std::size_t b, bool in_pairs_only) {
+        if (a == ground_ || b == ground_) {
+            return 0;
+        }
         if (in_pairs_only && (images_[a] != a || images_[b] != b)) {
             return 0;
         }
@@ -152,6 +160,7 @@ class MirrorSearch {
         }
     }
 
+    std::optional<ObjectId> ground_;  // stays what it is
     FigureMover mover_;
     std::vector<std::vector<Label>> figures_with_;  // by object, in rising order
     std::vector<bool> has_image_;                   // by figure
@@ -170,7 +179,7 @@ std::vector<std::pair<Label, Label>> object_pairs(const Example& example, const 
 
 NamePairs likely_mirror(const ExampleReading& reading, const SymmetryRule& rule) {
     const Example& example = reading.example();
-    const MirrorSearch unmoved(reading.figures(), rule, example.objects.size() + 1);
+    const MirrorSearch unmoved(reading, rule);
     const std::size_t order = order_of(rule.kind);
     if (order == 0) {
         return {};

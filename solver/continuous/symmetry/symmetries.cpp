@@ -12,6 +12,8 @@ namespace modelsynth::continuous {
 
 namespace {
 
+using Kind = SymmetryRule::Kind;
+
 constexpr double kSamePlace = 1e-6;  // spacings
 
 // Finds vertices by where they are.
@@ -76,11 +78,12 @@ Symmetries::Symmetries(
     std::vector<std::vector<Label>> labels,
     const std::array<double, 3>& size
 )
-    : relations_(relations_with_images(along_edges, labels)) {
+    : middle_(size[0] / 2, 0, size[2] / 2), relations_(relations_with_images(along_edges, labels)) {
     check(!rules.empty(), "symmetries without any");
     const PlaceFinder vertices(arrangement);
     const std::size_t count = arrangement.vertex_count();
     for (std::size_t i = 0; i < rules.size(); ++i) {
+        kinds_.push_back(rules[i].kind);
         const Motion motion = motion_of(rules[i], size);
         Generator& generator = generators_.emplace_back(Generator{
             std::vector<Site>(count, kNoSite),
@@ -154,6 +157,27 @@ std::size_t Symmetries::imageless() const {
                      : 0U;
     }
     return count;
+}
+
+bool Symmetries::is_filled_by_images(const Point& corner) const {
+    // Reflections and turns all together leave a half of the model, or a quarter, to be made: that
+    // with the lesser x and z. What begins exactly in the middle has vertices on the line there.
+    const bool is_east = corner.x() > middle_.x() * (1 + kSamePlace);
+    const bool is_south = corner.z() > middle_.z() * (1 + kSamePlace);
+    return std::any_of(kinds_.begin(), kinds_.end(), [&](Kind kind) {
+        switch (kind) {
+            case Kind::kReflectX:
+            case Kind::kHalfTurn:
+                return is_east;
+            case Kind::kReflectZ:
+                return is_south;
+            case Kind::kQuarterTurn:
+                return is_east || is_south;
+            case Kind::kTranslate:
+                break;
+        }
+        return false;
+    });
 }
 
 void Symmetries::narrow(SiteDomains& domains) const {

@@ -40,6 +40,10 @@ class Symmetries {
     // How many figures of the example can stand nowhere, for want of an image.
     [[nodiscard]] std::size_t imageless() const;
 
+    // Whether the images of other blocks fill all that lies beyond a corner of the model's box, so
+    // that nothing need be made there by itself. Shape: metres.
+    [[nodiscard]] bool is_filled_by_images(const Point& corner) const;
+
     // Takes figures that are not their own image from vertices that are theirs.
     void narrow(SiteDomains& domains) const;
 
@@ -59,6 +63,8 @@ class Symmetries {
         bool is_involution;
     };
 
+    std::vector<SymmetryRule::Kind> kinds_;
+    Point middle_;
     std::vector<Generator> generators_;
     Relations relations_;
 };

@@ -50,11 +50,22 @@ std::optional<SymmetryFault> find_symmetry_fault(
     if (rule.kind == Kind::kTranslate && motion.shift.norm() == 0) {
         return SymmetryFault{field, "is no step away"};
     }
+    const Example& example = reading.example();
+    if (example.ground && motion.shift.y() != 0) {
+        return SymmetryFault{field, "cannot go up or down: the ground stays where it is"};
+    }
     if (rule.mirror) {
+        for (const auto& [from, to] : object_pairs(example, *rule.mirror)) {
+            const bool is_kept =
+                from == kEmpty || to == kEmpty || from == example.ground || to == example.ground;
+            if (is_kept && from != to) {
+                return SymmetryFault{
+                    "/mirror",
+                    "the ground and empty space, where there are any, are their own images"};
+            }
+        }
         auto fault = find_image_fault(
-            reading.example().objects.size() + 1,
-            object_pairs(reading.example(), *rule.mirror),
-            order_of(rule.kind)
+            example.objects.size() + 1, object_pairs(example, *rule.mirror), order_of(rule.kind)
         );
         if (fault) {
             return SymmetryFault{"/mirror", std::move(*fault)};
