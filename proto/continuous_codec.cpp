@@ -17,22 +17,6 @@ using continuous::Point;
 
 constexpr double kOffsetMax = 2e5;  // the corners of the largest model are nearer
 
-std::optional<std::array<double, 3>> read_size(const Value& value) {
-    const auto values = value.array(3, 3);
-    if (!values) {
-        return std::nullopt;
-    }
-    std::array<double, 3> size = {};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto length = (*values)[axis].number_above(0, kMetresMax);
-        if (!length) {
-            return std::nullopt;
-        }
-        size[axis] = *length;
-    }
-    return size;
-}
-
 void read_weights(const Value& value, const RequestLimits& limits, Parameters& parameters) {
     if (!value.json().is_object()) {
         value.fault("must be an object of weights by object");
@@ -151,6 +135,22 @@ std::optional<Point> read_point(const Value& value, double extent_max) {
     return point;
 }
 
+std::optional<std::array<double, 3>> read_metre_size(const Value& value) {
+    const auto values = value.array(3, 3);
+    if (!values) {
+        return std::nullopt;
+    }
+    std::array<double, 3> size = {};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto length = (*values)[axis].number_above(0, kMetresMax);
+        if (!length) {
+            return std::nullopt;
+        }
+        size[axis] = *length;
+    }
+    return size;
+}
+
 std::optional<std::array<double, 3>> read_normal(const Value& value) {
     const auto direction = read_point(value, kMetresMax);
     if (!direction) {
@@ -166,13 +166,15 @@ OrderedJson write_point(const Point& point) {
     return OrderedJson::array({point.x(), point.y(), point.z()});
 }
 
-Parameters read_continuous_parameters(const Value& value, const RequestLimits& limits) {
-    Parameters parameters;
+Parameters read_continuous_parameters(
+    const Value& value, const RequestLimits& limits, Parameters parameters
+) {
     ObjectReader reader(value);
     if (const auto size = reader.optional("size")) {
-        parameters.size = read_size(*size);
+        parameters.size = read_metre_size(*size);
     }
     if (const auto spacing = reader.optional("spacing")) {
+        parameters.spacings.clear();
         read_spacing(*spacing, parameters);
     }
     if (const auto offsets = reader.optional("offsets")) {
@@ -185,6 +187,7 @@ Parameters read_continuous_parameters(const Value& value, const RequestLimits& l
         parameters.density = density->number(0.001, 1);
     }
     if (const auto weights = reader.optional("weights")) {
+        parameters.weights.clear();
         read_weights(*weights, limits, parameters);
     }
     if (const auto constraints = reader.optional("constraints")) {

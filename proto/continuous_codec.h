@@ -23,9 +23,13 @@ inline constexpr double kMetresMax = 1e5;
 // Three numbers that are not all 0.
 [[nodiscard]] std::optional<std::array<double, 3>> read_normal(const Value& value);
 
-// What stands under `parameters` of a continuous job; faults are noted in the value's list.
+// Three lengths above 0, in metres.
+[[nodiscard]] std::optional<std::array<double, 3>> read_metre_size(const Value& value);
+
+// What stands under `parameters` of a continuous job, each field in place of that of `parameters`;
+// faults are noted in the value's list.
 [[nodiscard]] continuous::Parameters read_continuous_parameters(
-    const Value& value, const RequestLimits& limits
+    const Value& value, const RequestLimits& limits, continuous::Parameters parameters
 );
 
 // The inverse, every default written out. Requires: defaults filled in.

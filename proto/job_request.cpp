@@ -120,6 +120,7 @@ class RequestReader {
     Parsed<JobRequest> read(std::uint64_t seed_if_absent) {
         read_from();
         read_solver();
+        read_places();
         read_example();
         read_seed(seed_if_absent);
         read_parameters();
@@ -153,8 +154,11 @@ class RequestReader {
         if (number) {
             request_.solver = kSolvers[*number];
         }
-        if (request_.from && request_.solver != kSolvers[0]) {
-            solver->fault("cannot start from a finished job");
+        if (earlier_ && !solver) {
+            request_.solver = earlier_->solver;
+        } else if (earlier_ && number && request_.solver != earlier_->solver) {
+            solver->fault("is not that of the job to start from");
+            earlier_.reset();
         }
     }
 
@@ -163,14 +167,14 @@ class RequestReader {
         if (!from) {
             return;
         }
-        request_.from = read_origin(*from, limits_, !find_origin_);
+        origin_.emplace(*from, limits_);
+        request_.from = origin_->read_job();
         if (!find_origin_ || request_.from->job_id.empty()) {
             return;
         }
         auto earlier = find_origin_(request_.from->job_id, request_.from->alternative);
         if (earlier) {
             earlier_ = std::move(*earlier);
-            take_origin_size();
         } else if (earlier.error().status == 404 && request_.from->alternative > 0) {
             faults_.add(
                 "/from/alternative",
@@ -184,13 +188,14 @@ class RequestReader {
         }
     }
 
-    void take_origin_size() {
-        GridSize& told = request_.from->origin.size;
-        const GridSize size = model_size(earlier_->task.parameters);
-        if (told != GridSize{} && told != size) {
+    void read_places() {
+        if (!origin_) {
+            return;
+        }
+        origin_->read_places(request_.solver, !find_origin_, *request_.from);
+        if (earlier_ && !take_size(earlier_->task.parameters, request_.from->origin)) {
             faults_.add("/from/size", "is not the size of that job's model");
         }
-        told = size;
     }
 
     // Whether an earlier job tells what is not given.
@@ -219,8 +224,12 @@ class RequestReader {
         } else {
             value.fault("must be the id of an example or an example object");
         }
-        if (example_ && earlier_ && label_names(*example_) != label_names(earlier_->task.example)) {
-            value.fault("must have the pieces of that job's example, in the same order");
+        if (example_ && earlier_ && !has_labels_of(*earlier_)) {
+            value.fault(
+                solver_has_cells(earlier_->solver)
+                    ? "must have the pieces of that job's example, in the same order"
+                    : "must be that job's example"
+            );
             example_ = earlier_->task.example;  // what else is wrong is told by the right one
         }
         if (example_ && solver_of(*example_) != request_.solver) {
@@ -230,6 +239,14 @@ class RequestReader {
             example_.reset();
         }
         faults_.add_all("", faults.take());
+    }
+
+    // Whether the example's labels mean what those of the earlier job mean. Those of solids have no
+    // names: it has to be the same example.
+    [[nodiscard]] bool has_labels_of(const JobRequest& earlier) const {
+        return solver_has_cells(earlier.solver)
+                   ? label_names(*example_) == label_names(earlier.task.example)
+                   : written_example_ == OrderedJson::parse(earlier.echo).at("example");
     }
 
     void read_inline_example(const Value& value) {
@@ -262,9 +279,7 @@ class RequestReader {
 
     void read_parameters() {
         if (request_.solver == kSolvers[1]) {
-            const auto given = fields_.optional("parameters");
-            solids_ =
-                given ? read_continuous_parameters(*given, limits_) : continuous::Parameters();
+            read_solid_parameters();
             return;
         }
         if (earlier_) {
@@ -283,15 +298,67 @@ class RequestReader {
         parameters_ = proto::read_parameters(*given, limits_, std::move(parameters_));
         size_is_usable_ = !gives("size") || (parameters_.size && parameters_.size->cell_count() <=
                                                                      limits_.model_cells_max);
-        if (earlier_ && size_is_usable_ && *parameters_.size != request_.from->origin.size) {
-            fit_to_other_size(gives("blocks"), gives("constraints"));
+        const auto* origin =
+            earlier_ ? &std::get<discrete::Origin>(request_.from->origin) : nullptr;
+        if (origin != nullptr && size_is_usable_ && *parameters_.size != origin->size) {
+            fit_to_other_size(*origin, gives("blocks"), gives("constraints"));
+        }
+    }
+
+    void read_solid_parameters() {
+        solids_.emplace();
+        if (earlier_) {
+            solids_ = std::get<continuous::Parameters>(earlier_->task.parameters);
+        }
+        const auto given = fields_.optional("parameters");
+        if (!given) {
+            return;
+        }
+        solids_ = read_continuous_parameters(*given, limits_, std::move(*solids_));
+        const auto gives = [&given](const char* name) {
+            return given->json().is_object() && given->json().contains(name);
+        };
+        const auto* origin =
+            earlier_ ? &std::get<continuous::Origin>(request_.from->origin) : nullptr;
+        if (origin == nullptr || !solids_->size || *solids_->size == origin->size) {
+            return;
+        }
+        continuous::Parameters before = *solids_;
+        before.size = origin->size;
+        before.blocks.reset();
+        const auto usual =
+            std::get<continuous::Parameters>(with_defaults(before, earlier_->task.example)).blocks;
+        if (!gives("blocks") && solids_->blocks == usual) {
+            solids_->blocks.reset();
+        }
+        if (!gives("constraints") && solids_->constraints) {
+            take_moved(*origin, *solids_->constraints);
+        }
+    }
+
+    // Constraints of the earlier job, for a model of another size.
+    template <class OfSolver, class Constraint>
+    void take_moved(const OfSolver& origin, std::vector<Constraint>& constraints) {
+        auto moved = moved_constraints(std::move(constraints), origin);
+        if (moved) {
+            constraints = std::move(*moved);
+        } else {
+            constraints.clear();
+            faults_.add(
+                "/parameters/constraints",
+                "must be given, since constraint " + std::to_string(moved.error()) +
+                    " of that job was for a model of its size: it holds in a mask or voxels, or "
+                    "about the middle"
+            );
         }
     }
 
     // What the earlier job was asked for was meant for a model of its size.
-    void fit_to_other_size(bool gives_blocks, bool gives_constraints) {
+    void fit_to_other_size(
+        const discrete::Origin& origin, bool gives_blocks, bool gives_constraints
+    ) {
         discrete::Parameters before;
-        before.size = request_.from->origin.size;
+        before.size = origin.size;
         const auto usual =
             std::get<discrete::Parameters>(with_defaults(before, earlier_->task.example)).blocks;
         if (!gives_blocks && parameters_.blocks == usual) {
@@ -300,20 +367,11 @@ class RequestReader {
         if (gives_constraints) {
             return;
         }
-        if (!lies_within(request_.from->origin, *parameters_.size)) {
+        if (!lies_within(origin, *parameters_.size)) {
             parameters_.constraints.clear();  // no places in such a model; a fault will tell
             return;
         }
-        auto moved = moved_constraints(std::move(parameters_.constraints), request_.from->origin);
-        if (moved) {
-            parameters_.constraints = std::move(*moved);
-        } else {
-            faults_.add(
-                "/parameters/constraints",
-                "must be given, since constraint " + std::to_string(moved.error()) +
-                    " of that job holds in a mask or voxels, which were for a model of its size"
-            );
-        }
+        take_moved(origin, parameters_.constraints);
     }
 
     void read_the_rest() {
@@ -344,9 +402,15 @@ class RequestReader {
         check_against_limits(
             *example_, request_.task.parameters, request_.alternatives.value_or(1), limits_, faults_
         );
-        if (request_.from && request_.from->origin.size != GridSize{}) {
+        // The planes of solids can be told once nothing is wrong with them.
+        if (request_.from && (!solids_ || faults_.empty())) {
             faults_.add_all(
-                "", find_origin_faults(*request_.from, model_size(request_.task.parameters))
+                "",
+                find_origin_faults(
+                    request_.task,
+                    request_.from->origin,
+                    earlier_ ? &earlier_->task.parameters : nullptr
+                )
             );
         }
     }
@@ -380,6 +444,7 @@ class RequestReader {
     Faults faults_;
     ObjectReader fields_;
     JobRequest request_;
+    std::optional<OriginReader> origin_;
     std::optional<JobRequest> earlier_;      // the one that this one starts from
     std::optional<Problem> origin_problem_;  // why there is none, besides the request's faults
     std::optional<Example> example_;

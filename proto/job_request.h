@@ -17,7 +17,7 @@ struct JobOrigin {
     std::string job_id;
     std::uint32_t alternative = 0;  // which of its models
     // Without its labels: they are not on the wire; whoever runs the job puts them there.
-    discrete::Origin origin = {};
+    Origin origin = {};
 };
 
 // A job request, checked whole and with every default filled in.

@@ -42,20 +42,6 @@ std::optional<MetreBox> read_metre_box(const Value& value) {
     return MetreBox{{min->x(), min->y(), min->z()}, {max->x(), max->y(), max->z()}};
 }
 
-Region read_metre_region(ObjectReader& reader, const RequestLimits& limits) {
-    Region region;
-    if (const auto box = reader.optional("box")) {
-        region.box = read_metre_box(*box);
-    }
-    if (const auto mask = reader.optional("mask")) {
-        region.mask = read_mask(*mask, limits);
-    }
-    if (const auto voxels = reader.optional("voxels")) {
-        region.voxels = read_voxels(*voxels, limits);
-    }
-    return region;
-}
-
 DimensionRule read_dimension(ObjectReader& reader) {
     DimensionRule rule;
     if (const auto normal = reader.required("normal")) {
@@ -204,14 +190,32 @@ OrderedJson write_constraint(const Constraint& constraint) {
     } else if (const auto* probability = std::get_if<ProbabilityRule>(&constraint.rule)) {
         written["weight"] = probability->weight;
     }
-    if (const auto& box = constraint.region.box) {
-        written["box"] = {{"min", box->min}, {"max", box->max}};
-    }
-    write_fields(constraint.region.mask, constraint.region.voxels, written);
+    write_region(constraint.region, written);
     return written;
 }
 
 }  // namespace
+
+Region read_metre_region(ObjectReader& reader, const RequestLimits& limits) {
+    Region region;
+    if (const auto box = reader.optional("box")) {
+        region.box = read_metre_box(*box);
+    }
+    if (const auto mask = reader.optional("mask")) {
+        region.mask = read_mask(*mask, limits);
+    }
+    if (const auto voxels = reader.optional("voxels")) {
+        region.voxels = read_voxels(*voxels, limits);
+    }
+    return region;
+}
+
+void write_region(const Region& region, OrderedJson& written) {
+    if (const auto& box = region.box) {
+        written["box"] = {{"min", box->min}, {"max", box->max}};
+    }
+    write_fields(region.mask, region.voxels, written);
+}
 
 std::vector<Constraint> read_solid_constraints(const Value& value, const RequestLimits& limits) {
     std::vector<Constraint> constraints;

@@ -17,4 +17,12 @@ namespace modelsynth::proto {
 
 [[nodiscard]] OrderedJson write_constraints(const std::vector<continuous::Constraint>& constraints);
 
+// The fields box, mask and voxels of an object; what is wrong goes to its faults.
+[[nodiscard]] continuous::Region read_metre_region(
+    ObjectReader& reader, const RequestLimits& limits
+);
+
+// Puts the fields of a region with what is written of the object.
+void write_region(const continuous::Region& region, OrderedJson& written);
+
 }  // namespace modelsynth::proto

@@ -4,6 +4,7 @@
 #include "server/jobs/store_problem.h"
 
 #include <utility>
+#include <variant>
 
 namespace modelsynth::server {
 
@@ -51,8 +52,8 @@ std::optional<ExampleLibrary::Entry> find_example(
     return ExampleLibrary::Entry{id, false, std::move(*example), *kept};
 }
 
-proto::Parsed<std::shared_ptr<const discrete::Origin>> load_origin(
-    JobStore& jobs, ArtifactStore& artifacts, const std::string& job_id, discrete::Origin origin
+proto::Parsed<std::shared_ptr<const Origin>> load_origin(
+    JobStore& jobs, ArtifactStore& artifacts, const std::string& job_id, Origin origin
 ) {
     const auto bytes =
         jobs.artifact(job_id, kOriginArtifact).and_then([&artifacts](const std::string& digest) {
@@ -62,13 +63,14 @@ proto::Parsed<std::shared_ptr<const discrete::Origin>> load_origin(
         return tl::unexpected(problem_of(bytes.error()));
     }
     auto labels = proto::decode_labels(*bytes);
-    if (!labels || labels->size() != origin.size.cell_count()) {
+    const auto* grid = std::get_if<discrete::Origin>(&origin);
+    if (!labels || (grid != nullptr && labels->size() != grid->size.cell_count())) {
         return tl::unexpected(
             proto::make_problem("internal", "the labels that the job starts from are damaged")
         );
     }
-    origin.labels = std::move(*labels);
-    return std::make_shared<const discrete::Origin>(std::move(origin));
+    std::visit([&](auto& of_solver) { of_solver.labels = std::move(*labels); }, origin);
+    return std::make_shared<const Origin>(std::move(origin));
 }
 
 }  // namespace modelsynth::server

@@ -5,7 +5,7 @@
 #include "server/store/artifact_names.h"
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
-#include "solver/discrete/origin.h"
+#include "solver/registry/task.h"
 
 #include <cstdint>
 #include <memory>
@@ -43,8 +43,8 @@ class InheritedInputs {
 );
 
 // What the job starts from, as its request tells it, with the labels.
-[[nodiscard]] proto::Parsed<std::shared_ptr<const discrete::Origin>> load_origin(
-    JobStore& jobs, ArtifactStore& artifacts, const std::string& job_id, discrete::Origin origin
+[[nodiscard]] proto::Parsed<std::shared_ptr<const Origin>> load_origin(
+    JobStore& jobs, ArtifactStore& artifacts, const std::string& job_id, Origin origin
 );
 
 }  // namespace modelsynth::server

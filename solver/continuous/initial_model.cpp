@@ -126,7 +126,9 @@ Result<std::vector<Label>> find_initial_labels(
     bool is_plain = true;
     for (std::size_t cell = 0; cell < arrangement.frame().cells.cell_count(); ++cell) {
         for (Site v = arrangement.first_in(cell); v < arrangement.first_in(cell + 1); ++v) {
-            if (!domains.at(v).contains(plain[v])) {
+            const bool fits = domains.at(v).contains(plain[v]) &&
+                              (symmetries == nullptr || symmetries->hold_at(v, plain));
+            if (!fits) {
                 rough.add(cell);
                 is_plain = false;
             }

@@ -6,7 +6,9 @@
 #include "solver/continuous/object_rules.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace modelsynth::continuous {
@@ -64,10 +66,49 @@ std::unique_ptr<const Symmetries> symmetries_of(
                : std::make_unique<const Symmetries>(reading, arrangement, rules, *parameters.size);
 }
 
+bool fit_along_edges(
+    const Relations& relations, const Arrangement& arrangement, std::span<const Label> labels
+) {
+    for (std::size_t v = 0; v < labels.size(); ++v) {
+        for (const ArrangementEdge& edge : arrangement.edges(static_cast<Site>(v))) {
+            if (edge.end != kNoSite &&
+                !relations.allows(edge.heading, labels[v], labels[edge.end])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+void narrow_to_kept(
+    std::span<const Label> labels,
+    std::span<const std::uint8_t> is_kept,
+    std::size_t label_count,
+    SiteDomains& domains
+) {
+    std::map<std::pair<Label, std::uint16_t>, Site> known;  // by label and domain
+    for (std::size_t v = 0; v < labels.size(); ++v) {
+        if (is_kept[v] == 0) {
+            continue;
+        }
+        const auto site = static_cast<Site>(v);
+        const auto [like, is_new] = known.try_emplace({labels[v], domains.number(site)}, site);
+        if (is_new) {
+            LabelSet own(label_count);
+            own.insert(labels[v]);
+            domains.narrow(site, own);
+        } else {
+            domains.repeat(site, like->second);
+        }
+    }
+}
+
 }  // namespace
 
 Result<Problem> make_problem(
-    std::shared_ptr<const ExampleReading> reading, const Parameters& parameters
+    std::shared_ptr<const ExampleReading> reading,
+    const Parameters& parameters,
+    const Origin* origin
 ) {
     const Topes& topes = reading->topes();
     const Figures& figures = reading->figures();
@@ -88,13 +129,30 @@ Result<Problem> make_problem(
     if (symmetries) {
         symmetries->narrow(domains);
     }
+    std::vector<Label> begun = std::move(plain);
+    std::vector<std::uint8_t> is_kept;
+    if (origin != nullptr) {
+        auto start = place_origin(*reading, parameters, *arrangement, *origin);
+        if (!start) {
+            return tl::unexpected(std::move(start.error()));
+        }
+        for (std::size_t v = 0; v < begun.size(); ++v) {
+            begun[v] = start->labels[v] == kNoLabel ? begun[v] : start->labels[v];
+        }
+        if (!fit_along_edges(reading->relations(), *arrangement, begun)) {
+            return tl::unexpected(Error{
+                ErrorCode::kInternal, "the model to start from does not fit itself", {}});
+        }
+        is_kept = std::move(start->is_kept);
+        narrow_to_kept(begun, is_kept, figures.count(), domains);
+    }
     auto initial = find_initial_labels(
         symmetries ? symmetries->relations() : reading->relations(),
         *arrangement,
         symmetries.get(),
         domains,
         *weights,
-        std::move(plain)
+        std::move(begun)
     );
     if (!initial) {
         return tl::unexpected(std::move(initial.error()));
@@ -108,6 +166,7 @@ Result<Problem> make_problem(
         std::move(domains),
         std::move(*weights),
         std::move(*initial),
+        std::move(is_kept),
         std::move(homeless),
         std::move(connections),
         std::move(symmetries)};

@@ -2,6 +2,7 @@
 
 #include "solver/continuous/arrangement.h"
 #include "solver/continuous/connections.h"
+#include "solver/continuous/origin.h"
 #include "solver/continuous/parameters.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/spacing.h"
@@ -10,6 +11,7 @@
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -24,9 +26,10 @@ struct Problem {
     Arrangement arrangement;
     SiteDomains domains;
     SiteWeights weights;
-    // Empty space, or the bare ground, but for what constraints ask for: consistent from the
-    // beginning, and what stands at the border of the model for good.
+    // Empty space, or the bare ground, or the model to start from, but for what constraints ask
+    // for: consistent from the beginning, and what stands at the border of the model for good.
     std::vector<Label> initial;
+    std::vector<std::uint8_t> is_kept;  // by vertex: 1 where the initial label stays; or nothing
     // Figures of the example that no vertex of the model can have.
     std::vector<Label> homeless;
     std::vector<Connection> connections;
@@ -39,10 +42,14 @@ struct Problem {
 };
 
 // Requires: every parameter has a value, and find_faults() finds nothing.
+// What is asked for is asked of the whole model: a kept label that constraints do not allow is a
+// contradiction.
 // Fails: kTooLarge, kInvalidArgument; see Arrangement::make() and make_weights(); kContradiction,
-// kGaveUp; see find_initial_labels().
+// kGaveUp; see find_initial_labels(); as place_origin().
 [[nodiscard]] Result<Problem> make_problem(
-    std::shared_ptr<const ExampleReading> reading, const Parameters& parameters
+    std::shared_ptr<const ExampleReading> reading,
+    const Parameters& parameters,
+    const Origin* origin = nullptr
 );
 
 }  // namespace modelsynth::continuous

@@ -123,6 +123,9 @@ class Run {
                 );
             });
         }
+        if (!problem_.is_kept.empty()) {
+            std::erase_if(schedule, [&](const Box& block) { return free_vertices(block).empty(); });
+        }
         if (connections_) {
             order_outwards(schedule, cells);
         }
@@ -152,7 +155,8 @@ class Run {
   private:
     // False when it was stopped.
     bool modify(const Box& block, std::uint32_t attempts) {
-        const GraphPart part = part_of(problem_.arrangement, block, problem_.symmetries.get());
+        const GraphPart part =
+            part_of(problem_.arrangement, free_vertices(block), problem_.symmetries.get());
         BlockOptions options;
         options.attempts = attempts;
         options.order = Order::kRandom;
@@ -174,6 +178,17 @@ class Run {
         }
         report(problem_.symmetries ? cells_touched(part) : block, result);
         return true;
+    }
+
+    // Those of a block that are not to stay as they are, in rising order.
+    [[nodiscard]] std::vector<Site> free_vertices(const Box& block) const {
+        std::vector<Site> vertices;
+        problem_.arrangement.for_each_vertex(block, [&](Site site) {
+            if (problem_.is_kept.empty() || problem_.is_kept[site] == 0) {
+                vertices.push_back(site);
+            }
+        });
+        return vertices;
     }
 
     // The block with something in it of the first connection of which there is nothing elsewhere,
@@ -287,7 +302,7 @@ class Run {
     }
 
     Result<Synthesis> finish(bool is_in_blocks) {
-        if (!is_in_blocks && made_.stats.blocks.accepted() == 0) {
+        if (!is_in_blocks && total_ > 0 && made_.stats.blocks.accepted() == 0) {
             return tl::unexpected(Error{
                 ErrorCode::kGaveUp,
                 "no model was found in " + std::to_string(kWholeAttempts) +

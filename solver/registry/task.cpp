@@ -190,9 +190,10 @@ Result<Finished> run_discrete(
     const auto& parameters = std::get<discrete::Parameters>(task.parameters);
     // What starts from one model is of no use to the next request.
     const auto preparation =
-        task.origin == nullptr
-            ? preparations.discrete.find_or_make(example, parameters)
-            : discrete::Preparation::make(example, parameters, task.origin.get());
+        task.origin == nullptr ? preparations.discrete.find_or_make(example, parameters)
+                               : discrete::Preparation::make(
+                                     example, parameters, &std::get<discrete::Origin>(*task.origin)
+                                 );
     if (!preparation) {
         return tl::unexpected(preparation.error());
     }
@@ -212,8 +213,16 @@ Result<Finished> run_continuous(
     const Checkpoint* from
 ) {
     const auto& parameters = std::get<continuous::Parameters>(task.parameters);
+    const auto& solids = std::get<Solids>(task.example);
     const auto problem =
-        preparations.continuous->find_or_make(std::get<Solids>(task.example), parameters);
+        task.origin == nullptr
+            ? preparations.continuous->find_or_make(solids, parameters)
+            : continuous::make_problem(
+                  solids, parameters, &std::get<continuous::Origin>(*task.origin)
+              )
+                  .map([](continuous::Problem made) {
+                      return std::make_shared<const continuous::Problem>(std::move(made));
+                  });
     if (!problem) {
         return tl::unexpected(problem.error());
     }

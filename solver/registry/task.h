@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/continuous/analysis.h"
+#include "solver/continuous/origin.h"
 #include "solver/continuous/parameters.h"
 #include "solver/core/observer.h"
 #include "solver/core/result.h"
@@ -34,6 +35,7 @@ using Example = std::variant<
     std::shared_ptr<const discrete::Example>,
     std::shared_ptr<const continuous::ExampleReading>>;
 using Parameters = std::variant<discrete::Parameters, continuous::Parameters>;
+using Origin = std::variant<discrete::Origin, continuous::Origin>;
 
 // "discrete", ...: the name under which requests ask for the solver of such examples.
 [[nodiscard]] std::string_view solver_of(const Example& example);
@@ -59,7 +61,7 @@ struct Task {
     Example example;
     Parameters parameters;  // defaults filled in
     std::uint64_t seed = 0;
-    std::shared_ptr<const discrete::Origin> origin = nullptr;  // null: made from nothing
+    std::shared_ptr<const Origin> origin = nullptr;  // null: made from nothing
 };
 
 // Where the whole is proved to be made in one pass, that is the default (thesis 3.3.7).

@@ -229,9 +229,9 @@ TEST(Fuzz, JobsThatStartFromAnother) {
         if (model_size(parsed->task.parameters).cell_count() <= kMadeCellsMax) {
             Task task = parsed->task;
             if (parsed->from) {
-                discrete::Origin origin = parsed->from->origin;
-                origin.labels = first->model.labels;
-                task.origin = std::make_shared<const discrete::Origin>(std::move(origin));
+                Origin origin = parsed->from->origin;
+                std::get<discrete::Origin>(origin).labels = first->model.labels;
+                task.origin = std::make_shared<const Origin>(std::move(origin));
             }
             const auto finished = run(task, preparations, observer, {});
             EXPECT_TRUE(finished || !finished.error().message.empty());

@@ -2,6 +2,7 @@
 
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/symmetry/motion.h"
+#include "solver/continuous/vertex_finder.h"
 #include "solver/core/label_images.h"
 
 #include <algorithm>
@@ -14,41 +15,7 @@ namespace {
 
 using Kind = SymmetryRule::Kind;
 
-constexpr double kSamePlace = 1e-6;  // spacings
-
-// Finds vertices by where they are.
-class PlaceFinder {
-  public:
-    explicit PlaceFinder(const Arrangement& arrangement) : arrangement_(arrangement) {}
-
-    [[nodiscard]] Site at(const Point& place) const {
-        const Arrangement::Frame& frame = arrangement_.frame();
-        const double tolerance = kSamePlace * frame.cell;
-        const auto cell_of = [&](double along, std::int32_t count) {
-            const double cell = std::floor(along / frame.cell);
-            return static_cast<std::int32_t>(std::clamp(cell, 0.0, count - 1.0));
-        };
-        const auto low = [&](int axis, std::int32_t count) {
-            return cell_of(place[axis] - tolerance, count);
-        };
-        const auto high = [&](int axis, std::int32_t count) {
-            return cell_of(place[axis] + tolerance, count) + 1;
-        };
-        const Box cells = {
-            {low(0, frame.cells.x), low(1, frame.cells.y), low(2, frame.cells.z)},
-            {high(0, frame.cells.x), high(1, frame.cells.y), high(2, frame.cells.z)}};
-        Site found = kNoSite;
-        arrangement_.for_each_vertex(cells, [&](Site site) {
-            if ((arrangement_.position(site) - place).cwiseAbs().maxCoeff() < tolerance) {
-                found = site;
-            }
-        });
-        return found;
-    }
-
-  private:
-    const Arrangement& arrangement_;
-};
+constexpr double kSamePlace = 1e-6;  // of the model's extent
 
 std::vector<std::vector<Label>> all_figure_images(
     const ExampleReading& reading, std::span<const SymmetryRule> rules
@@ -80,7 +47,7 @@ Symmetries::Symmetries(
 )
     : middle_(size[0] / 2, 0, size[2] / 2), relations_(relations_with_images(along_edges, labels)) {
     check(!rules.empty(), "symmetries without any");
-    const PlaceFinder vertices(arrangement);
+    const VertexFinder vertices(arrangement);
     const std::size_t count = arrangement.vertex_count();
     for (std::size_t i = 0; i < rules.size(); ++i) {
         kinds_.push_back(rules[i].kind);
@@ -157,6 +124,13 @@ std::size_t Symmetries::imageless() const {
                      : 0U;
     }
     return count;
+}
+
+bool Symmetries::hold_at(Site vertex, std::span<const Label> labels) const {
+    return std::all_of(generators_.begin(), generators_.end(), [&](const Generator& generator) {
+        const Site image = generator.images[vertex];
+        return image == kNoSite || generator.labels[labels[vertex]] == labels[image];
+    });
 }
 
 bool Symmetries::is_filled_by_images(const Point& corner) const {

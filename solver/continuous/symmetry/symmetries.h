@@ -40,6 +40,9 @@ class Symmetries {
     // How many figures of the example can stand nowhere, for want of an image.
     [[nodiscard]] std::size_t imageless() const;
 
+    // Whether the vertex's image has the image of its figure. Shape: labels by vertex.
+    [[nodiscard]] bool hold_at(Site vertex, std::span<const Label> labels) const;
+
     // Whether the images of other blocks fill all that lies beyond a corner of the model's box, so
     // that nothing need be made there by itself. Shape: metres.
     [[nodiscard]] bool is_filled_by_images(const Point& corner) const;

@@ -143,10 +143,15 @@ TEST_F(Origin, TheEchoTellsWhereItStandsAndWhatIsMadeAnew) {
     EXPECT_EQ(request.echo, echo.dump());
     ASSERT_TRUE(request.from);
     EXPECT_EQ(request.from->job_id, "a");
-    EXPECT_EQ(request.from->origin.size, (GridSize{9, 8, 7}));
-    EXPECT_EQ(request.from->origin.at, (Cell{1, 0, 2}));
-    EXPECT_EQ(request.from->origin.remade.box, (Box{{0, 0, 0}, {2, 8, 2}}));
-    EXPECT_EQ(request.from->origin.remade.cells, (std::vector<Cell>{{3, 3, 3}}));
+    EXPECT_EQ(std::get<discrete::Origin>(request.from->origin).size, (GridSize{9, 8, 7}));
+    EXPECT_EQ(std::get<discrete::Origin>(request.from->origin).at, (Cell{1, 0, 2}));
+    EXPECT_EQ(
+        std::get<discrete::Origin>(request.from->origin).remade.box, (Box{{0, 0, 0}, {2, 8, 2}})
+    );
+    EXPECT_EQ(
+        std::get<discrete::Origin>(request.from->origin).remade.cells,
+        (std::vector<Cell>{{3, 3, 3}})
+    );
 }
 
 TEST_F(Origin, TheAlternativeIsAskedForAndStandsInTheEcho) {
@@ -188,7 +193,7 @@ TEST_F(Origin, AnEchoIsReadWithoutTheEarlierJob) {
     const auto again = parse_job_request(echo, {}, find_built_in, nullptr, 0);
     ASSERT_TRUE(again) << to_json(again.error());
     EXPECT_EQ(again->echo, echo);
-    EXPECT_EQ(again->from->origin.size, (GridSize{9, 2, 7}));
+    EXPECT_EQ(std::get<discrete::Origin>(again->from->origin).size, (GridSize{9, 2, 7}));
     // Nobody can be asked for what it does not tell.
     for (const char* field : {"solver", "example"}) {
         Json lacking = Json::parse(echo);
