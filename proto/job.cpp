@@ -34,9 +34,13 @@ double fraction(std::uint64_t part, std::uint64_t whole) {
 OrderedJson triple(const Cell& cell) { return OrderedJson::array({cell.x, cell.y, cell.z}); }
 
 // How a job may start from a finished one: places in the model as the parameters tell them.
-OrderedJson from_schema(const OrderedJson& parameters) {
-    OrderedJson schema = OrderedJson::parse(kDiscreteFromSchema);
-    for (const char* name : {"box", "cells", "mask", "voxels", "cell"}) {
+OrderedJson from_schema(
+    const char* schema_text,
+    std::initializer_list<const char*> definitions,
+    const OrderedJson& parameters
+) {
+    OrderedJson schema = OrderedJson::parse(schema_text);
+    for (const char* name : definitions) {
         schema["$defs"][name] = parameters.at("$defs").at(name);
     }
     return schema;
@@ -60,19 +64,23 @@ OrderedJson discrete_document() {
          "Labels on a grid: any two neighbours in the model are neighbours in the example "
          "(Merrell 2009, chapter 3)."},
         {"parameters", parameters},
-        {"from", from_schema(parameters)},
+        {"from",
+         from_schema(kDiscreteFromSchema, {"box", "cells", "mask", "voxels", "cell"}, parameters)},
         {"alternatives", alternatives_schema()},
         {"urls", {{"self", "/v1/solvers/discrete"}}}};
 }
 
 OrderedJson continuous_document() {
+    const OrderedJson parameters = OrderedJson::parse(kContinuousParametersSchema);
     return {
         {"name", "continuous"},
         {"title", "Continuous model synthesis"},
         {"description",
          "Solids with faces of any slope: what stands around every corner, edge and face of the "
          "model stands so in the example (Merrell 2009, chapter 4)."},
-        {"parameters", OrderedJson::parse(kContinuousParametersSchema)},
+        {"parameters", parameters},
+        {"from",
+         from_schema(kContinuousFromSchema, {"point", "box", "mask", "voxels"}, parameters)},
         {"alternatives", alternatives_schema()},
         {"urls", {{"self", "/v1/solvers/continuous"}}}};
 }

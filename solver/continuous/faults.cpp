@@ -87,7 +87,7 @@ class FaultFinder {
         }
         is_size_good_ = faults_.empty();
         for (const auto& [name, weight] : parameters_.weights) {
-            check_object("/weights", name);
+            check_object("/weights/" + pointer_part(name), name);
         }
         for (std::size_t i = 0; i < parameters_.constraints->size(); ++i) {
             check_constraint("/constraints/" + std::to_string(i), (*parameters_.constraints)[i]);

@@ -84,6 +84,17 @@ class RequestMaker {
         return fill_defaults(parameters, reading_.example());
     }
 
+    // A box of whole spacings.
+    MetreBox box() {
+        MetreBox box;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int low = chance_.below(extent_[axis]);
+            box.min[axis] = low;
+            box.max[axis] = low + 1 + chance_.below(std::min(3, extent_[axis] - low));
+        }
+        return box;
+    }
+
   private:
     Constraint constraint() {
         switch (chance_.below(10)) {
@@ -148,12 +159,7 @@ class RequestMaker {
         Region region;
         const int kind = chance_.below(8);
         if (kind < 4) {
-            MetreBox& box = region.box.emplace();
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const int low = chance_.below(extent_[axis]);
-                box.min[axis] = low;
-                box.max[axis] = low + 1 + chance_.below(std::min(3, extent_[axis] - low));
-            }
+            region.box = box();
         }
         if (kind == 4 || kind == 3) {
             Mask& mask = region.mask.emplace();
@@ -412,6 +418,49 @@ int case_count() {
     return asked == nullptr ? 60 : std::atoi(asked);
 }
 
+// A box of a model is made anew as the whole was: what lies outside of it stays.
+void expect_the_rest_kept(
+    const Reading& reading,
+    const Parameters& parameters,
+    const MetreBox& box,
+    const std::vector<Label>& labels,
+    const ModelLooker& before,
+    Chance& chance
+) {
+    const Origin origin = {*parameters.size, labels, {}, {box}};
+    const auto problem = make_problem(reading, parameters, &origin);
+    ASSERT_TRUE(problem) << problem.error().message;
+    RecordingObserver observer;
+    const auto made = synthesise(*problem, parameters, 77, observer, {});
+    if (!made) {
+        EXPECT_EQ(made.error().code, ErrorCode::kGaveUp) << made.error().message;
+        return;
+    }
+    const Surface surface = make_surface(*problem, made->labels);
+    const ModelLooker after(*problem, parameters, surface);
+    const Eigen::AlignedBox3d& clip = after.places().set().frame().clip;
+    EXPECT_EQ(text(SurfaceChecker(reading->example()).find_faults(surface, clip)), "");
+    for (int i = 0; i < 300; ++i) {
+        const Point share(chance.share(), chance.share(), chance.share());
+        const Point place = clip.min() + share.cwiseProduct(clip.sizes());
+        // What is sunk into the ground belongs to what is above.
+        const std::array<double, 3> at = {place.x(), std::max(place.y(), 0.0), place.z()};
+        bool is_outside = false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            is_outside = is_outside || at[axis] < box.min[axis] || at[axis] > box.max[axis];
+        }
+        if (is_outside) {
+            EXPECT_EQ(int{after.places().at(place)}, int{before.places().at(place)})
+                << place.transpose();
+        }
+    }
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (!has_region(constraint.rule) || has_axes(*problem, *parameters.spacing)) {
+            after.expect_kept(constraint, chance);
+        }
+    }
+}
+
 // What came of one random request.
 enum class Ending : std::uint8_t { kModel, kContradiction, kGaveUp, kNoModel };
 
@@ -453,6 +502,10 @@ Ending expect_constraints_hold(const Reading& reading, std::uint64_t seed, int e
         if (!has_region(constraint.rule) || has_axes(*problem, *parameters.spacing)) {
             looker.expect_kept(constraint, chance);
         }
+    }
+    if (has_axes(*problem, *parameters.spacing)) {
+        SCOPED_TRACE("made anew");
+        expect_the_rest_kept(reading, parameters, maker.box(), made->labels, looker, chance);
     }
     return Ending::kModel;
 }

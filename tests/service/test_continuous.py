@@ -227,7 +227,7 @@ def test_labels_are_of_grids(server):
     ({"spacing": 0}, ["/parameters/spacing"]),
     ({"density": 0}, ["/parameters/density"]),
     ({"density": 1.5}, ["/parameters/density"]),
-    ({"weights": {"door": 1}}, ["/parameters/weights"]),
+    ({"weights": {"door": 1}}, ["/parameters/weights/door"]),
     ({"order": "scan"}, ["/parameters/order"]),
     ({"constraints": [{"kind": "dimension", "object": "door", "normal": [1, 0, 0]}]},
      ["/parameters/constraints/0/object"]),
@@ -539,7 +539,7 @@ def test_a_job_goes_on_after_a_crash(make_server):
 
 def test_the_requests_of_the_guide_are_done(server):
     requests = re.findall(r"```json\n(.*?)```", _GUIDE.read_text(), re.DOTALL)
-    assert len(requests) == 10
+    assert len(requests) == 12
     for text in requests:
         answer = server.request("POST", "/v1/jobs", text, headers={
             "Prefer": "wait=60", "Content-Type": "application/json"})

@@ -15,8 +15,9 @@ from event_reader import EventReader
 from workload import ENDLESS_JOB, STEADY_JOB, YARD, submit
 
 _GUIDE = pathlib.Path(__file__).parents[2] / "proto" / "resynthesis.md"
+_OF_GRIDS = _GUIDE.read_text().partition("## Solids")[0]
 _FIRST, *_REQUESTS = [json.loads(text) for text in
-                      re.findall(r"```json\n(.*?)```", _GUIDE.read_text(), re.DOTALL)]
+                      re.findall(r"```json\n(.*?)```", _OF_GRIDS, re.DOTALL)]
 
 SIZE = [12, 4, 11]
 BOX = {"min": [3, 0, 2], "max": [9, 4, 8]}

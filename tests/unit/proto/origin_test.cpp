@@ -356,10 +356,10 @@ TEST_F(Origin, EveryFaultIsFoundAtOnce) {
             "at": [0, 0], "box": {"min": [0, 0, 0], "max": [10, 8, 9]}, "cells": [[9, 0, 0]],
             "region": 1}, "parameters": {"order": "up"}})"),
         (Pointers{
+            "/solver",
             "/from/at",
             "/from/region",
             "/from/size",
-            "/solver",
             "/seed",
             "/parameters/order",
             "/from/box",
