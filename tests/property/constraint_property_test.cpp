@@ -2,6 +2,7 @@
 #include "solver/discrete/faults.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
+#include "tests/support/case_count.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/constraint_oracle.h"
 #include "tests/support/examples.h"
@@ -20,12 +21,6 @@ using testing::ConstraintOracle;
 using testing::find_inconsistency;
 using testing::make_random_example;
 using testing::RecordingObserver;
-
-// How many random cases; MODELSYNTH_CASES asks for more.
-std::uint64_t case_count() {
-    const char* asked = std::getenv("MODELSYNTH_CASES");
-    return asked == nullptr ? 3000 : std::strtoull(asked, nullptr, 10);
-}
 
 struct Case {
     Example example;
@@ -239,7 +234,7 @@ void expect_all_hold(const Case& wanted, std::span<const Label> labels, const st
 TEST(ConstraintProperty, HoldInEveryStateOfTheModel) {
     std::map<std::size_t, std::size_t> solved;
     std::size_t gave_up = 0;
-    for (std::uint64_t seed = 0; seed < case_count(); ++seed) {
+    for (std::uint64_t seed = 0; seed < testing::case_count(3000); ++seed) {
         const std::size_t kind = seed % CaseMaker::kKinds;
         const Case wanted = CaseMaker(seed).make(seed, {11, 4, 11}, kind);
         const auto faults = find_faults(wanted.example, wanted.parameters);
@@ -273,16 +268,17 @@ TEST(ConstraintProperty, HoldInEveryStateOfTheModel) {
         }
     }
     for (std::size_t kind = 0; kind < CaseMaker::kKinds; ++kind) {
-        EXPECT_GT(solved[kind], case_count() / CaseMaker::kKinds / 4) << kRuleNames.at(kind);
+        EXPECT_GT(solved[kind], testing::case_count(3000) / CaseMaker::kKinds / 4)
+            << kRuleNames.at(kind);
     }
-    EXPECT_LT(gave_up, case_count() / 20);
+    EXPECT_LT(gave_up, testing::case_count(3000) / 20);
 }
 
 // All models of a tiny size, by brute force; one has to be found exactly when there is one, and
 // "contradiction" said only when there is none.
 TEST(ConstraintProperty, ATinyModelIsFoundExactlyWhenThereIsOne) {
     std::map<bool, std::size_t> cases;
-    for (std::uint64_t seed = 0; seed < case_count() / 3; ++seed) {
+    for (std::uint64_t seed = 0; seed < testing::case_count(3000) / 3; ++seed) {
         Case wanted = CaseMaker(seed).make(
             seed, {1, 1, 1}, static_cast<std::size_t>(seed % CaseMaker::kKinds)
         );
@@ -324,8 +320,8 @@ TEST(ConstraintProperty, ATinyModelIsFoundExactlyWhenThereIsOne) {
             << "seed " << seed << " "
             << kRuleNames.at(wanted.parameters.constraints[0].rule.index());
     }
-    EXPECT_GT(cases[true], case_count() / 9);
-    EXPECT_GT(cases[false], case_count() / 30);
+    EXPECT_GT(cases[true], testing::case_count(3000) / 9);
+    EXPECT_GT(cases[false], testing::case_count(3000) / 30);
 }
 
 }  // namespace

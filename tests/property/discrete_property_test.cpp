@@ -2,6 +2,7 @@
 #include "solver/discrete/faults.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
+#include "tests/support/case_count.h"
 #include "tests/support/chi_squared.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
@@ -19,12 +20,6 @@ namespace {
 using testing::find_inconsistency;
 using testing::make_random_example;
 using testing::RecordingObserver;
-
-// How many random cases; MODELSYNTH_CASES asks for more.
-std::uint64_t case_count() {
-    const char* asked = std::getenv("MODELSYNTH_CASES");
-    return asked == nullptr ? 600 : std::strtoull(asked, nullptr, 10);
-}
 
 struct Case {
     Example example;
@@ -123,7 +118,7 @@ void expect_wishes_held(const Case& wanted, const Synthesis& model, std::uint64_
 TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
     std::size_t solved = 0;
     std::size_t refused = 0;
-    for (std::uint64_t seed = 0; seed < case_count(); ++seed) {
+    for (std::uint64_t seed = 0; seed < testing::case_count(600); ++seed) {
         const Case wanted = make_case(seed);
         ASSERT_TRUE(find_faults(wanted.example, wanted.parameters).empty()) << "seed " << seed;
         RecordingObserver observer;
@@ -150,8 +145,8 @@ TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
         }
     }
     // The cases must reach both ends, or they test nothing.
-    EXPECT_GT(solved, case_count() / 4);
-    EXPECT_GT(refused, case_count() / 50);
+    EXPECT_GT(solved, testing::case_count(600) / 4);
+    EXPECT_GT(refused, testing::case_count(600) / 50);
 }
 
 TEST(DiscreteProperty, EqualRequestsGiveEqualModelsAndOtherSeedsOthers) {

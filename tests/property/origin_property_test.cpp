@@ -5,6 +5,7 @@
 #include "solver/discrete/preparation.h"
 #include "solver/discrete/region.h"
 #include "solver/discrete/synthesis.h"
+#include "tests/support/case_count.h"
 #include "tests/support/consistency_checker.h"
 #include "tests/support/examples.h"
 
@@ -21,11 +22,6 @@ using testing::find_inconsistency;
 using testing::make_random_example;
 using testing::RecordingObserver;
 
-std::uint64_t case_count() {
-    const char* asked = std::getenv("MODELSYNTH_CASES");
-    return asked == nullptr ? 400 : std::strtoull(asked, nullptr, 10);
-}
-
 Parameters sized(const Example& example, const GridSize& size, bool in_blocks) {
     Parameters parameters;
     parameters.size = size;
@@ -40,7 +36,7 @@ TEST(OriginProperty, WhatIsKeptKeepsItsLabelsInEveryStateAndTheRestFitsToIt) {
     std::size_t grown = 0;
     std::size_t cases = 0;
     std::size_t failed = 0;
-    for (std::uint64_t seed = 0; seed < case_count(); ++seed) {
+    for (std::uint64_t seed = 0; seed < testing::case_count(400); ++seed) {
         RandomStream random({seed, 3, 0, 98});
         const auto below = [&random](std::int32_t bound) {
             return static_cast<std::int32_t>(random.below(static_cast<std::uint32_t>(bound)));

@@ -1,5 +1,5 @@
 // Constraints of solids: random ones on random examples, and what one sees of the models.
-// MODELSYNTH_SOLID_CASES asks for a longer run.
+// MODELSYNTH_SOLID_PERCENT asks for a longer run.
 
 #include "solver/continuous/connections.h"
 #include "solver/continuous/faults.h"
@@ -9,6 +9,7 @@
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
+#include "tests/support/case_count.h"
 #include "tests/support/examples.h"
 #include "tests/support/random_solids.h"
 #include "tests/support/solid_places.h"
@@ -34,6 +35,7 @@ namespace modelsynth::continuous {
 namespace {
 
 using testing::RecordingObserver;
+using testing::solid_case_count;
 using testing::SolidPlaces;
 using testing::SolidsKind;
 using testing::SurfaceChecker;
@@ -413,11 +415,6 @@ std::string name_of(const ::testing::TestParamInfo<SolidsKind>& tested) {
     return kNames.at(static_cast<std::size_t>(tested.param));
 }
 
-int case_count() {
-    const char* asked = std::getenv("MODELSYNTH_SOLID_CASES");
-    return asked == nullptr ? 60 : std::atoi(asked);
-}
-
 // A box of a model is made anew as the whole was: what lies outside of it stays.
 void expect_the_rest_kept(
     const Reading& reading,
@@ -514,7 +511,7 @@ class SolidConstraints : public ::testing::TestWithParam<SolidsKind> {};
 
 TEST_P(SolidConstraints, HoldForWhateverIsMade) {
     std::array<std::size_t, 4> endings = {};
-    for (int seed = 0; seed < case_count(); ++seed) {
+    for (std::uint64_t seed = 0; seed < solid_case_count(60); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const auto reading =
             ExampleReading::make(make_random_solids(GetParam(), static_cast<std::uint32_t>(seed)));
@@ -522,11 +519,10 @@ TEST_P(SolidConstraints, HoldForWhateverIsMade) {
             continue;
         }
         const int extent_max = (*reading)->topes().family_count() > 4 ? 4 : 6;
-        const Ending ending =
-            expect_constraints_hold(*reading, static_cast<std::uint64_t>(seed), extent_max);
+        const Ending ending = expect_constraints_hold(*reading, seed, extent_max);
         ++endings.at(static_cast<std::size_t>(ending));
     }
-    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], 10U);
+    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], solid_case_count(10));
     EXPECT_GT(endings[static_cast<std::size_t>(Ending::kContradiction)], 0U);
 }
 
@@ -545,10 +541,9 @@ TEST(SolidConstraintsOfBuiltInExamples, HoldForWhateverIsMade) {
         if (reading->example().spacing != 1) {
             continue;  // requests here are in metres that are spacings
         }
-        for (int seed = 0; seed < case_count() / 15; ++seed) {
+        for (std::uint64_t seed = 0; seed < solid_case_count(4); ++seed) {
             SCOPED_TRACE(reading->example().name + ", seed " + std::to_string(seed));
-            const Ending ending =
-                expect_constraints_hold(reading, static_cast<std::uint64_t>(seed), 8);
+            const Ending ending = expect_constraints_hold(reading, seed, 8);
             ++endings.at(static_cast<std::size_t>(ending));
         }
     }

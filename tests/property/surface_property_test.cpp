@@ -5,6 +5,7 @@
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
+#include "tests/support/case_count.h"
 #include "tests/support/examples.h"
 #include "tests/support/random_solids.h"
 #include "tests/support/surface_checker.h"
@@ -25,6 +26,7 @@ namespace {
 
 using testing::ModelFaults;
 using testing::RecordingObserver;
+using testing::solid_case_count;
 using testing::SolidsKind;
 using testing::SurfaceChecker;
 
@@ -75,7 +77,7 @@ class SolidsBuiltIn : public ::testing::TestWithParam<std::size_t> {
 TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
     const SurfaceChecker checker(reading()->example());
     std::size_t polygons = 0;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (std::uint64_t seed = 1; seed <= solid_case_count(20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const auto extent = [&](std::uint64_t step) {
             return 8 + static_cast<double>(seed * step % 13) / 2;
@@ -84,7 +86,7 @@ TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
         expect_right(checker, reading(), model);
         polygons += model.surface.polygons.size();
     }
-    EXPECT_GT(polygons, 20U * 10U);
+    EXPECT_GT(polygons, solid_case_count(20) * 10U);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -104,7 +106,7 @@ class RandomSolids : public ::testing::TestWithParam<SolidsKind> {};
 
 TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
     std::size_t models = 0;
-    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    for (std::uint32_t seed = 0; seed < solid_case_count(40); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Example example = make_random_solids(GetParam(), seed);
         const auto reading = ExampleReading::make(example);
@@ -133,7 +135,7 @@ TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
             ++models;
         }
     }
-    EXPECT_GT(models, 20U);
+    EXPECT_GT(models, solid_case_count(20));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -7,6 +7,7 @@
 #include "solver/discrete/analysis/corner_condition.h"
 #include "solver/discrete/analysis/region_induction.h"
 #include "solver/discrete/scan_order.h"
+#include "tests/support/case_count.h"
 #include "tests/support/examples.h"
 #include "tests/support/naive_grid.h"
 #include "tests/support/naive_runs.h"
@@ -23,18 +24,13 @@
 namespace modelsynth::discrete {
 namespace {
 
+using testing::case_count;
 using testing::expect_never_fails;
 using testing::make_example;
 using testing::make_tiny_example;
 using testing::NaiveGrid;
 using testing::NaiveRules;
 using testing::scan;
-
-// How many random examples; MODELSYNTH_CASES asks for more or fewer.
-std::uint64_t case_count(std::uint64_t usual) {
-    const char* asked = std::getenv("MODELSYNTH_CASES");
-    return asked == nullptr ? usual : std::strtoull(asked, nullptr, 10);
-}
 
 void expect_counterexample(
     const Example& example, const Counterexample& counterexample, std::uint64_t seed

@@ -333,12 +333,12 @@ TEST(SolidsForbidden, AreNotSunkIntoTheGroundEither) {
         names.push_back(roads->example().objects[road - 1U].name);
     }
     const auto corners = [&](const Rule& rule, const Region& region) {
-        const Made made = make(roads, asking(roads, {120, 9, 120}, {{rule, names, region}}), 4);
+        const Made made = make(roads, asking(roads, {60, 5, 60}, {{rule, names, region}}), 4);
         std::array<std::size_t, 2> of_halves = {};
         for (const SurfacePolygon& polygon : made.surface.polygons) {
             if (std::find(network.begin(), network.end(), polygon.object) != network.end()) {
                 for (const std::uint32_t point : polygon.loops.front()) {
-                    ++of_halves.at(made.surface.points[point].x() < 60 - 1e-9 ? 0 : 1);
+                    ++of_halves.at(made.surface.points[point].x() < 30 - 1e-9 ? 0 : 1);
                 }
             }
         }
