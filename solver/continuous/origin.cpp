@@ -1,8 +1,10 @@
 #include "solver/continuous/origin.h"
 
+#include "solver/continuous/arrangement.h"
 #include "solver/continuous/coverage.h"
 #include "solver/continuous/model_planes.h"
 #include "solver/continuous/problem.h"
+#include "solver/continuous/reading.h"
 #include "solver/continuous/vertex_finder.h"
 
 #include <algorithm>

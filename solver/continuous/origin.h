@@ -1,9 +1,7 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
 #include "solver/continuous/constraints.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/reading.h"
 #include "solver/core/label_set.h"
 #include "solver/core/result.h"
 
@@ -12,6 +10,9 @@
 #include <vector>
 
 namespace modelsynth::continuous {
+
+class Arrangement;
+class ExampleReading;
 
 // A model made before that another one of the same example starts from: only a part is made anew,
 // all else keeps its figures.

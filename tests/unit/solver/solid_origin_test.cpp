@@ -233,10 +233,14 @@ TEST(SolidOrigin, IsAskedForWhatIsAskedOfTheWholeModel) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::kContradiction);
     // Nor is what stands in the east the image of anything yet.
-    const Constraint mirror = {SymmetryRule{SymmetryRule::Kind::kReflectX}};
-    const auto unlike = try_to_make(reading, asking(reading, {18, 9, 16}, {{mirror}}), 2, &origin);
-    ASSERT_FALSE(unlike);
-    EXPECT_EQ(unlike.error().code, ErrorCode::kContradiction);
+    for (const SymmetryRule& rule :
+         {SymmetryRule{SymmetryRule::Kind::kReflectX},
+          SymmetryRule{SymmetryRule::Kind::kTranslate, {3, 0, 0}}}) {
+        const auto unlike =
+            try_to_make(reading, asking(reading, {18, 9, 16}, {{Constraint{rule}}}), 2, &origin);
+        ASSERT_FALSE(unlike);
+        EXPECT_EQ(unlike.error().code, ErrorCode::kContradiction);
+    }
 }
 
 TEST(SolidOrigin, StaysSymmetricWhereBothSidesAreMadeAnew) {

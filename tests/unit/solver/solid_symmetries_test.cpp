@@ -253,6 +253,23 @@ TEST(LikelyMirror, ExchangesCornersOfOneSideForThoseOfTheOther) {
     EXPECT_NE(ring[1], "bend 1");
 }
 
+TEST(LikelyMirror, IsNoFaultOfAnyBuiltInExample) {
+    for (const Reading& reading : examples::built_in_solids()) {
+        for (const Kind kind :
+             {Kind::kReflectX, Kind::kReflectZ, Kind::kHalfTurn, Kind::kQuarterTurn}) {
+            Parameters parameters = asking(reading, {12, 9, 12}, {symmetric(kind)});
+            fill_mirrors(*reading, parameters);
+            const auto& mirror =
+                std::get<SymmetryRule>(parameters.constraints->front().rule).mirror;
+            const std::vector<Fault> faults = find_faults(*reading, parameters);
+            for (const Fault& fault : faults) {
+                EXPECT_FALSE(fault.pointer.starts_with("/constraints/0/mirror")) << fault.detail;
+            }
+            EXPECT_TRUE(mirror || !faults.empty()) << reading->example().name;
+        }
+    }
+}
+
 TEST(SolidSymmetries, TellWhatIsLeftOutForWantOfAnImage) {
     const Reading reading = find_solids("skyscrapers");
     const auto warnings = [&](std::optional<NamePairs> mirror) {
