@@ -41,7 +41,7 @@ inline constexpr double kMetresMax = 1e5;
 );
 
 // The inverse.
-[[nodiscard]] OrderedJson write_solids(const continuous::Example& example);
+[[nodiscard]] OrderedJson write_solids(const continuous::Example& given);
 
 // What a list shows of an example; its resource has all of it besides.
 [[nodiscard]] OrderedJson solids_summary(

@@ -3,9 +3,11 @@
 #include "proto/continuous_codec.h"
 #include "proto/example_codec.h"
 #include "proto/image_codec.h"
+#include "proto/shape_codec.h"
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/mesh_import.h"
+#include "solver/continuous/shapes/cut_boxes.h"
 
 #include <algorithm>
 #include <span>
@@ -73,9 +75,12 @@ class SolidsReader {
         if (!value_.faults().empty()) {
             return std::nullopt;
         }
-        value_.faults().add_all(value_.pointer(), continuous::find_solid_faults(example_));
-        if (!value_.faults().empty()) {
-            return std::nullopt;
+        for (const auto& find_faults :
+             {continuous::find_solid_faults, continuous::find_shape_faults}) {
+            value_.faults().add_all(value_.pointer(), find_faults(example_));
+            if (!value_.faults().empty()) {
+                return std::nullopt;
+            }
         }
         if (!is_spacing_given_) {
             example_.spacing = continuous::default_spacing(example_);
@@ -84,6 +89,7 @@ class SolidsReader {
             const double spacing = example_.spacing;
             example_.size = {24 * spacing, 10 * spacing, 24 * spacing};
         }
+        continuous::cut_boxes(example_);
         return std::move(example_);
     }
 
@@ -147,6 +153,9 @@ class SolidsReader {
         }
         if (const auto weight = reader.optional("weight")) {
             object.weight = weight->number(0, 1e6).value_or(1);
+        }
+        if (const auto shape = reader.optional("shape")) {
+            object.shape = read_shape(*shape);
         }
         reader.finish();
         material.name = object.name;
@@ -276,6 +285,9 @@ OrderedJson write_objects(const continuous::Example& example) {
     };
     OrderedJson objects = OrderedJson::array();
     for (const ObjectType& object : example.objects) {
+        if (object.rest_of != continuous::kEmpty) {
+            continue;
+        }
         const Material& material = example.materials[object.material];
         objects.push_back(
             {{"name", object.name},
@@ -307,7 +319,8 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
     return std::move(*reading);
 }
 
-OrderedJson write_solids(const continuous::Example& example) {
+OrderedJson write_solids(const continuous::Example& given) {
+    const continuous::Example example = continuous::with_whole_boxes(given);
     OrderedJson objects = write_objects(example);
     const ImageList images(example);
     for (std::size_t i = 0; i < example.objects.size(); ++i) {
@@ -315,6 +328,9 @@ OrderedJson write_solids(const continuous::Example& example) {
         if (texture) {
             objects[i]["texture"] = {
                 {"image", images.number_of(*texture)}, {"metres", texture->repeat_m}};
+        }
+        if (const auto& shape = example.objects[i].shape) {
+            objects[i]["shape"] = write_shape(*shape);
         }
     }
     OrderedJson polyhedra = OrderedJson::array();

@@ -35,12 +35,13 @@ std::vector<DimensionFilter> dimension_filters(
     for (const Constraint& constraint : *parameters.constraints) {
         if (const auto* rule = std::get_if<DimensionRule>(&constraint.rule)) {
             const auto& [x, y, z] = rule->normal;
-            const ObjectId object = find_object(reading.example(), constraint.objects.front());
-            filters.push_back(
-                {*reading.topes().find_family(Point(x, y, z)),
-                 static_cast<char>(object),
-                 rule->spacings}
-            );
+            const std::size_t family = *reading.topes().find_family(Point(x, y, z));
+            const ObjectSet objects = objects_named(reading.example(), constraint.objects);
+            for (std::size_t object = 1; object < objects.size(); ++object) {
+                if (objects[object]) {
+                    filters.push_back({family, static_cast<char>(object), rule->spacings});
+                }
+            }
         }
     }
     return filters;
@@ -156,9 +157,11 @@ class DomainMaker {
 std::vector<double> weights_of_objects(const Example& example, const Parameters& parameters) {
     std::vector<double> weights = {1};
     for (const ObjectType& object : example.objects) {
+        const ObjectType& whole =
+            object.rest_of == kEmpty ? object : example.objects[object.rest_of - 1U];
         double weight = object.weight;
         for (const auto& [name, given] : parameters.weights) {
-            weight = name == object.name ? given : weight;
+            weight = name == whole.name ? given : weight;
         }
         weights.push_back(weight);
     }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,18 +22,31 @@ using ObjectId = std::uint8_t;
 inline constexpr ObjectId kEmpty = 0;
 inline constexpr std::size_t kObjectTypesMax = 255;
 
-// A kind of solid: a material of its own, and what a request may call it.
-struct ObjectType {
-    std::string name;
-    std::uint32_t material = 0;  // index into Example::materials
-    double weight = 1;           // of the figures in which it takes part
-
-    friend bool operator==(const ObjectType&, const ObjectType&) = default;
-};
-
 // A flat polygon without holes. Shape: numbers of corners, counter-clockwise seen from outside;
 // convex or not.
 using Face = std::vector<std::uint32_t>;
+
+// A mesh that is put in the place of an object's boxes, stretched over each (thesis 4.6.4).
+struct Shape {
+    std::vector<Point> corners;  // their bounding box is laid over the box
+    std::vector<Face> faces;     // convex, nearly flat
+    // Faces that meet at a lesser angle (degrees) look smooth.
+    double smooth_degrees = 40;
+    // The axes along which the boxes grow by the same factor: none, or two or three.
+    std::array<bool, 3> is_even = {};
+};
+
+// A kind of solid: a material of its own, and what a request may call it.
+struct ObjectType {
+    std::string name;
+    std::uint32_t material = 0;                    // index into Example::materials
+    double weight = 1;                             // of the figures in which it takes part
+    std::shared_ptr<const Shape> shape = nullptr;  // null: it looks like its solids
+    // Not kEmpty: no object of its own, but what was cut off that one's boxes; see cut_boxes().
+    ObjectId rest_of = kEmpty;
+
+    friend bool operator==(const ObjectType&, const ObjectType&) = default;
+};
 
 // A closed solid of one object type: every edge of a face is an edge of another face, the other
 // way round.

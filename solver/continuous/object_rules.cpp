@@ -128,6 +128,12 @@ ObjectSet objects_named(const Example& example, const std::vector<std::string>& 
     for (const std::string& name : names) {
         objects.set(find_object(example, name));  // kEmpty of kEmptyName
     }
+    for (std::size_t i = 0; i < example.objects.size(); ++i) {
+        const ObjectId whole = example.objects[i].rest_of;
+        if (whole != kEmpty && objects[whole]) {
+            objects.set(i + 1);
+        }
+    }
     return objects;
 }
 

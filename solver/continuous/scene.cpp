@@ -1,5 +1,7 @@
 #include "solver/continuous/scene.h"
 
+#include "solver/continuous/families.h"
+#include "solver/continuous/shapes/placed_shapes.h"
 #include "solver/continuous/triangulation/triangulation.h"
 
 #include <Eigen/Geometry>
@@ -95,18 +97,53 @@ class MeshBuilder {
         const auto triangles = triangulate(flat, numbered.front(), holes);
         if (part != nullptr) {
             for (const auto& [a, b, c] : triangles) {
-                add_fan(primitive, clipped({corners[a], corners[b], corners[c]}, *part), axes);
+                add_fan(
+                    primitive,
+                    clipped({corners[a], corners[b], corners[c]}, *part),
+                    axes,
+                    [&axes](const Point& /*place*/) { return axes.normal; }
+                );
             }
             return;
         }
         const auto first = static_cast<std::uint32_t>(primitive.positions.size());
         for (const Point& corner : corners) {
-            add_vertex(primitive, corner, axes);
+            add_vertex(primitive, corner, axes, axes.normal);
         }
         for (const auto& triangle : triangles) {
             for (const std::uint32_t corner : triangle) {
                 primitive.indices.push_back(first + corner);
             }
+        }
+    }
+
+    // Three corners after each other.
+    void add_triangles(
+        std::uint32_t material, std::span<const ShapeCorner> corners, const Bounds* part
+    ) {
+        Primitive& primitive = primitive_of(material);
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+            const std::span<const ShapeCorner, 3> triangle(&corners[i], 3);
+            std::vector<Point> places = {triangle[0].place, triangle[1].place, triangle[2].place};
+            const Point across = (places[1] - places[0]).cross(places[2] - places[0]);
+            FaceAxes axes = axes_of(across.normalized());
+            if (const auto& texture = kit_->materials[material].texture) {
+                axes.repeat_m = texture->repeat_m;
+            }
+            const auto normal_at = [&](const Point& place) {
+                Point normal = Point::Zero();
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Point& a = triangle[(k + 1) % 3].place;
+                    const Point& b = triangle[(k + 2) % 3].place;
+                    const double share = (a - place).cross(b - place).dot(across);
+                    normal += share * triangle[k].normal;
+                }
+                return normal.normalized();
+            };
+            if (part != nullptr) {
+                places = clipped(std::move(places), *part);
+            }
+            add_fan(primitive, places, axes, normal_at);
         }
     }
 
@@ -125,13 +162,15 @@ class MeshBuilder {
   private:
     static constexpr std::size_t kNone = ~std::size_t{0};
 
-    static void add_vertex(Primitive& primitive, const Point& point, const FaceAxes& axes) {
+    static void add_vertex(
+        Primitive& primitive, const Point& point, const FaceAxes& axes, const Point& normal
+    ) {
         const auto rounded = [](const Point& p) {
             return Vec3{
                 static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
         };
         primitive.positions.push_back(rounded(point));
-        primitive.normals.push_back(rounded(axes.normal));
+        primitive.normals.push_back(rounded(normal));
         primitive.colors.push_back({255, 255, 255});
         primitive.texture_coordinates.push_back(
             {static_cast<float>(point.dot(axes.right) / axes.repeat_m),
@@ -139,12 +178,16 @@ class MeshBuilder {
         );
     }
 
+    template <class NormalAt>
     static void add_fan(
-        Primitive& primitive, const std::vector<Point>& polygon, const FaceAxes& axes
+        Primitive& primitive,
+        const std::vector<Point>& polygon,
+        const FaceAxes& axes,
+        NormalAt normal_at
     ) {
         const auto first = static_cast<std::uint32_t>(primitive.positions.size());
         for (const Point& corner : polygon) {
-            add_vertex(primitive, corner, axes);
+            add_vertex(primitive, corner, axes, normal_at(corner));
         }
         for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
             for (const std::uint32_t corner : {0U, i, i + 1}) {
@@ -170,7 +213,12 @@ class MeshBuilder {
 Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* part) {
     const Example& example = reading.example();
     MeshBuilder builder(example, "model");
-    for (const SurfacePolygon& polygon : surface.polygons) {
+    const PlacedShapes placed = place_shapes(example, surface);
+    for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
+        const SurfacePolygon& polygon = surface.polygons[p];
+        if (placed.is_replaced[p] != 0) {
+            continue;
+        }
         Point normal;
         if (polygon.family != kNoFamily) {
             normal = (polygon.is_along_normal ? 1 : -1) * reading.topes().normals()[polygon.family];
@@ -189,6 +237,10 @@ Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* 
             part
         );
     }
+    for (const PlacedShape& one : placed.shapes) {
+        const ObjectType& object = example.objects[one.object - 1U];
+        builder.add_triangles(object.material, triangles_of(*object.shape, one.box), part);
+    }
     return builder.finish();
 }
 
@@ -206,6 +258,20 @@ Scene make_example_scene(const ExampleReading& reading) {
     const Example& example = reading.example();
     MeshBuilder builder(example, "example");
     for (const Polyhedron& solid : example.polyhedra) {
+        const ObjectType& object = example.objects[solid.object - 1U];
+        if (object.rest_of != kEmpty) {
+            continue;
+        }
+        if (object.shape != nullptr) {
+            Eigen::AlignedBox3d box;
+            for (const Point& corner : solid.corners) {
+                box.extend(corner);
+            }
+            builder.add_triangles(
+                object.material, triangles_of(*object.shape, {box.min(), box.max()}), nullptr
+            );
+            continue;
+        }
         for (const Face& face : solid.faces) {
             builder.add(
                 example.objects[solid.object - 1U].material,

@@ -4,6 +4,7 @@
 #include "solver/continuous/problem_cache.h"
 #include "solver/continuous/reading.h"
 #include "solver/continuous/scene.h"
+#include "solver/continuous/shapes/placed_shapes.h"
 #include "solver/continuous/surface.h"
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
@@ -230,8 +231,15 @@ Result<Finished> run_continuous(
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }
-    made->stats.polygons = continuous::make_surface(**problem, made->labels).polygons.size();
+    const continuous::Surface surface = continuous::make_surface(**problem, made->labels);
+    made->stats.polygons = surface.polygons.size();
     made->stats.warnings = continuous::warnings_of(**problem);
+    if (continuous::place_shapes(solids->example(), surface).are_too_many) {
+        made->stats.warnings.emplace_back(
+            "shapes would come to more than " + std::to_string(continuous::kShapeTrianglesMax) +
+            " triangles, so that boxes stand in their places"
+        );
+    }
     if (made->stats.changed == 0) {
         made->stats.warnings.emplace_back("nothing fits but what the model began as");
     }

@@ -20,6 +20,7 @@ struct Entry {
 constexpr std::array kEntries = {
     Entry{"houses", make_houses},
     Entry{"skyscrapers", make_skyscrapers},
+    Entry{"domes", make_domes},
     Entry{"buildings", make_buildings},
     Entry{"pentagons", make_pentagons},
     Entry{"arches", make_arches},

@@ -20,6 +20,7 @@ namespace modelsynth::examples {
 // Each of them, made anew.
 [[nodiscard]] continuous::Example make_arches();
 [[nodiscard]] continuous::Example make_buildings();
+[[nodiscard]] continuous::Example make_domes();
 [[nodiscard]] continuous::Example make_fractals();
 [[nodiscard]] continuous::Example make_houses();
 [[nodiscard]] continuous::Example make_oil_platform();

@@ -1,0 +1,17 @@
+#pragma once
+
+// Private to proto's sources.
+
+#include "proto/json.h"
+#include "solver/continuous/example.h"
+
+#include <memory>
+
+namespace modelsynth::proto {
+
+// What stands under `shape` of an object of solids; what is wrong goes to the value's faults.
+[[nodiscard]] std::shared_ptr<const continuous::Shape> read_shape(const Value& given);
+
+[[nodiscard]] OrderedJson write_shape(const continuous::Shape& shape);
+
+}  // namespace modelsynth::proto

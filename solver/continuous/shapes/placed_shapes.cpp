@@ -1,0 +1,254 @@
+#include "solver/continuous/shapes/placed_shapes.h"
+
+#include "solver/continuous/shapes/cut_boxes.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace modelsynth::continuous {
+
+namespace {
+
+using Box3 = Eigen::AlignedBox3d;
+
+constexpr double kTolerance = 1e-6;  // of a box
+
+using Loop = std::vector<std::uint32_t>;
+
+Point area_of(const Surface& surface, const Loop& loop) {
+    const Point& origin = surface.points[loop.front()];
+    Point area = Point::Zero();
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+        area += (surface.points[loop[i]] - origin).cross(surface.points[loop[i + 1]] - origin) / 2;
+    }
+    return area;
+}
+
+// A side of a polygon, and how that polygon lies at it.
+struct Side {
+    std::size_t polygon = 0;
+    Point inwards = Point::Zero();   // in the polygon's plane, across the side
+    Point outwards = Point::Zero();  // normal
+};
+
+// The parts of an object's surface that enclose one piece of it each.
+class Pieces {
+  public:
+    Pieces(const Surface& surface, ObjectId object) : surface_(surface) {
+        for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
+            if (surface.polygons[p].object == object) {
+                polygons_.push_back(p);
+            }
+        }
+        root_.resize(surface.polygons.size());
+        std::iota(root_.begin(), root_.end(), std::size_t{0});
+        join();
+    }
+
+    // Polygons by piece, in the order of the first ones.
+    [[nodiscard]] std::vector<std::vector<std::size_t>> all() {
+        std::map<std::size_t, std::vector<std::size_t>> by_root;
+        for (const std::size_t polygon : polygons_) {
+            by_root[root(polygon)].push_back(polygon);
+        }
+        std::vector<std::vector<std::size_t>> pieces;
+        for (auto& [first, polygons] : by_root) {
+            pieces.push_back(std::move(polygons));
+        }
+        return pieces;
+    }
+
+  private:
+    using Ends = std::pair<std::uint32_t, std::uint32_t>;
+
+    void join() {
+        std::map<Ends, std::vector<Side>> sides;
+        for (const std::size_t p : polygons_) {
+            const SurfacePolygon& polygon = surface_.polygons[p];
+            const Point outwards = area_of(surface_, polygon.loops.front()).normalized();
+            for (const Loop& loop : polygon.loops) {
+                for (std::size_t i = 0; i < loop.size(); ++i) {
+                    const Ends ends = {loop[i], loop[(i + 1) % loop.size()]};
+                    const Point along =
+                        (surface_.points[ends.second] - surface_.points[ends.first]).normalized();
+                    sides[ends].push_back({p, outwards.cross(along), outwards});
+                }
+            }
+        }
+        for (const auto& [ends, here] : sides) {
+            const auto there = sides.find({ends.second, ends.first});
+            for (const Side& side : here) {
+                if (there != sides.end()) {
+                    root_[root(side.polygon)] = root(across(side, there->second).polygon);
+                }
+            }
+        }
+        // The first polygon of a piece stands for it.
+        for (const std::size_t p : polygons_) {
+            std::size_t& of_root = first_.try_emplace(root(p), p).first->second;
+            of_root = std::min(of_root, p);
+        }
+        for (const auto& [old_root, first] : first_) {
+            root_[first] = first;
+            root_[old_root] = first;
+        }
+    }
+
+    // Of several that meet at a side, the one that one comes to first through the inside.
+    static const Side& across(const Side& side, const std::vector<Side>& others) {
+        const auto turn_to = [&side](const Side& other) {
+            const double turn =
+                std::atan2(-other.inwards.dot(side.outwards), other.inwards.dot(side.inwards));
+            return turn > 1e-9 ? turn : turn + 2 * std::numbers::pi;
+        };
+        return *std::min_element(others.begin(), others.end(), [&](const Side& a, const Side& b) {
+            return turn_to(a) < turn_to(b);
+        });
+    }
+
+    std::size_t root(std::size_t polygon) {
+        while (root_[polygon] != polygon) {
+            root_[polygon] = root_[root_[polygon]];
+            polygon = root_[polygon];
+        }
+        return polygon;
+    }
+
+    const Surface& surface_;
+    std::vector<std::size_t> polygons_;  // of the object
+    std::vector<std::size_t> root_;      // by polygon
+    std::map<std::size_t, std::size_t> first_;
+};
+
+// The box of a piece that is so much of it.
+std::optional<Box3> box_of(
+    const Surface& surface, const std::vector<std::size_t>& piece, double share
+) {
+    Box3 box;
+    double volume = 0;
+    for (const std::size_t p : piece) {
+        for (const Loop& loop : surface.polygons[p].loops) {
+            for (const std::uint32_t point : loop) {
+                box.extend(surface.points[point]);
+            }
+            volume += area_of(surface, loop).dot(surface.points[loop.front()]) / 3;
+        }
+    }
+    const bool is_whole =
+        std::abs(volume - share * box.volume()) <= kTolerance * std::abs(box.volume());
+    return is_whole && box.volume() > 0 ? std::optional(box) : std::nullopt;
+}
+
+std::size_t triangle_count(const Shape& shape) {
+    std::size_t count = 0;
+    for (const Face& face : shape.faces) {
+        count += face.size() - 2;
+    }
+    return count;
+}
+
+Point face_normal(const Shape& shape, const Face& face) {
+    Point area = Point::Zero();
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+        area += (shape.corners[face[i]] - shape.corners[face[0]])
+                    .cross(shape.corners[face[i + 1]] - shape.corners[face[0]]);
+    }
+    return area;  // as long as the face is large, so that large ones count more
+}
+
+}  // namespace
+
+PlacedShapes place_shapes(const Example& example, const Surface& surface) {
+    PlacedShapes placed;
+    placed.is_replaced.assign(surface.polygons.size(), 0);
+    std::size_t triangles = 0;
+    for (std::size_t i = 0; i < example.objects.size(); ++i) {
+        const ObjectType& type = example.objects[i];
+        const auto object = static_cast<ObjectId>(i + 1);
+        if (type.shape == nullptr) {
+            continue;
+        }
+        std::set<std::tuple<float, float, float>> boxes;  // by their middles
+        const auto key_of = [](const Box3& box) {
+            const Eigen::Vector3f middle = box.center().cast<float>();
+            return std::tuple(middle.x(), middle.y(), middle.z());
+        };
+        for (const std::vector<std::size_t>& piece : Pieces(surface, object).all()) {
+            if (const auto box = box_of(surface, piece, share_of_box(example, object))) {
+                placed.shapes.push_back({object, {box->min(), box->max()}});
+                boxes.insert(key_of(*box));
+                triangles += triangle_count(*type.shape);
+                for (const std::size_t polygon : piece) {
+                    placed.is_replaced[polygon] = 1;
+                }
+            }
+        }
+        for (std::size_t r = 0; r < example.objects.size(); ++r) {
+            if (example.objects[r].rest_of != object) {
+                continue;
+            }
+            const auto rest = static_cast<ObjectId>(r + 1);
+            for (const std::vector<std::size_t>& piece : Pieces(surface, rest).all()) {
+                const auto box = box_of(surface, piece, share_of_box(example, rest));
+                if (box && boxes.contains(key_of(*box))) {
+                    for (const std::size_t polygon : piece) {
+                        placed.is_replaced[polygon] = 1;
+                    }
+                }
+            }
+        }
+    }
+    if (triangles > kShapeTrianglesMax) {
+        return {{}, std::vector<std::uint8_t>(surface.polygons.size()), true};
+    }
+    return placed;
+}
+
+std::vector<ShapeCorner> triangles_of(const Shape& shape, const Bounds& box) {
+    Box3 own;
+    for (const Point& corner : shape.corners) {
+        own.extend(corner);
+    }
+    const Point scale = (box.max - box.min).cwiseQuotient(own.sizes());
+    std::vector<Point> normals;
+    std::vector<std::vector<std::size_t>> faces_at(shape.corners.size());
+    for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+        normals.push_back(face_normal(shape, shape.faces[f]));
+        for (const std::uint32_t corner : shape.faces[f]) {
+            faces_at[corner].push_back(f);
+        }
+    }
+    const double least_cosine = std::cos(shape.smooth_degrees * std::numbers::pi / 180);
+    const auto corner_at = [&](std::size_t face, std::uint32_t corner) {
+        Point normal = Point::Zero();
+        for (const std::size_t other : faces_at[corner]) {
+            if (normals[other].normalized().dot(normals[face].normalized()) >= least_cosine) {
+                normal += normals[other];
+            }
+        }
+        return ShapeCorner{
+            box.min + (shape.corners[corner] - own.min()).cwiseProduct(scale),
+            normal.cwiseQuotient(scale).normalized()};
+    };
+    std::vector<ShapeCorner> triangles;
+    for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+        const Face& face = shape.faces[f];
+        for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+            for (const std::uint32_t corner : {face[0], face[i], face[i + 1]}) {
+                triangles.push_back(corner_at(f, corner));
+            }
+        }
+    }
+    return triangles;
+}
+
+}  // namespace modelsynth::continuous
