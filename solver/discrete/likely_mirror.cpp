@@ -18,7 +18,7 @@
 // Two beginnings are made better and the better end is taken: every piece its own image, and each
 // piece that which it looks like once moved. A step exchanges images in a way that cannot spoil the
 // order of the map: two pieces become each other, or two change their roles in it, or four form a
-// ring. Each is looked at for the pieces that are alike alone.
+// ring. Only those are tried that are the most alike, first in looks and then in surroundings.
 
 namespace modelsynth::discrete {
 
@@ -31,17 +31,21 @@ constexpr std::int64_t kLooksMax = std::int64_t{1} << 22;
 constexpr std::size_t kWindow = 192;
 constexpr std::size_t kCandidatesMax = 12;
 constexpr std::size_t kRingCandidatesMax = 4;
-// Meshes that differ by no more look alike.
-constexpr float kAlike = 0.12F;
+// Surroundings are compared up to so many steps away.
+constexpr int kSteps = 4;
+// Looks are compared in such parts of a cell's width.
+constexpr float kLookParts = 200;
+constexpr float kUnlikeMax = 1000;
 
 // A piece that another may become.
 struct Candidate {
-    int look;  // how unlike they are, in steps too small to see
+    int look;    // how unlike they are, in steps too small to see
+    int doubts;  // at how many of the distances their surroundings differ
     std::uint32_t degrees;
     bool is_other;
     Label image;
 
-    [[nodiscard]] auto key() const { return std::tuple(look, degrees, is_other, image); }
+    [[nodiscard]] auto key() const { return std::tuple(look, doubts, degrees, is_other, image); }
 
     friend bool operator<(const Candidate& a, const Candidate& b) { return a.key() < b.key(); }
 };
@@ -90,6 +94,19 @@ std::vector<Label> in_order_of_invariants(
 Candidates find_candidates(const Example& example, const PairImages& pairs, Symmetry::Kind kind) {
     const std::vector<PieceLook> looks = piece_looks(example);
     const std::vector<Label> ordered = in_order_of_invariants(pairs, looks);
+    std::array<std::vector<std::uint64_t>, kSteps> here;
+    std::array<std::vector<std::uint64_t>, kSteps> there;
+    for (int steps = 0; steps < kSteps; ++steps) {
+        here.at(static_cast<std::size_t>(steps)) = pairs.colours(false, steps + 1);
+        there.at(static_cast<std::size_t>(steps)) = pairs.colours(true, steps + 1);
+    }
+    const auto doubts_of = [&](Label from, Label to) {
+        int doubts = 0;
+        for (std::size_t steps = 0; steps < kSteps; ++steps) {
+            doubts += there.at(steps)[from] == here.at(steps)[to] ? 0 : 1;
+        }
+        return doubts;
+    };
     Candidates candidates(ordered.size());
     for (std::size_t i = 0; i < ordered.size(); ++i) {
         const Label from = ordered[i];
@@ -99,9 +116,10 @@ Candidates find_candidates(const Example& example, const PairImages& pairs, Symm
         for (std::size_t j = i - std::min(i, kWindow); j < end; ++j) {
             const Label to = ordered[j];
             const float unlike = difference(image, looks[to]);
-            if (unlike <= kAlike) {
+            if (std::isfinite(unlike)) {
                 of_it.push_back(
-                    {static_cast<int>(unlike * 200),
+                    {static_cast<int>(std::min(unlike, kUnlikeMax) * kLookParts),
+                     doubts_of(from, to),
                      difference_of_degrees(pairs, from, to),
                      from != to,
                      to}

@@ -2,7 +2,21 @@
 
 #include "solver/discrete/names.h"
 
+#include <utility>
+
 namespace modelsynth::discrete {
+
+namespace {
+
+// A step of SplitMix64.
+std::uint64_t mixed(std::uint64_t value) {
+    value += 0x9E3779B97F4A7C15U;
+    value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9U;
+    value = (value ^ (value >> 27U)) * 0x94D049BB133111EBU;
+    return value ^ (value >> 31U);
+}
+
+}  // namespace
 
 std::array<Direction, kDirectionCount> direction_images(Symmetry::Kind kind) {
     constexpr auto kEast = Direction::kEast;
@@ -46,7 +60,6 @@ PairImages::PairImages(const Example& example, Symmetry::Kind kind)
     for (const AdjacentPair& pair : example.adjacency) {
         add_neighbours(pair.axis, pair.lower, pair.upper);
     }
-    neighbour_count_ = pairs_.size();
     add_sides(example);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         const Pair& pair = pairs_[i];
@@ -82,6 +95,29 @@ void PairImages::add_sides(const Example& example) {
     }
 }
 
+std::vector<std::uint64_t> PairImages::colours(bool is_moved, int steps) const {
+    std::vector<std::uint64_t> colours(label_count());
+    for (int i = 0; i < steps; ++i) {
+        std::vector<std::uint64_t> next = colours;
+        const auto add = [&](Label label, std::size_t direction, Label neighbour) {
+            const auto seen =
+                is_moved ? static_cast<std::size_t>(directions_[direction]) : direction;
+            next[label] += mixed(colours[neighbour] + seen + 1);  // in whatever order they come
+        };
+        for (const auto& [place, lower, upper] : pairs_) {
+            if (place < kAxisCount) {
+                add(lower, std::size_t{2} * place, upper);
+                add(upper, std::size_t{2} * place + 1, lower);
+            }
+        }
+        for (std::uint64_t& colour : next) {
+            colour = mixed(colour);
+        }
+        colours = std::move(next);
+    }
+    return colours;
+}
+
 bool PairImages::has_image(std::uint32_t pair, std::span<const Label> images) const {
     const auto& [place, lower, upper] = pairs_[pair];
     if (place >= kAxisCount) {
@@ -91,14 +127,6 @@ bool PairImages::has_image(std::uint32_t pair, std::span<const Label> images) co
     const auto direction = static_cast<std::size_t>(directions_[std::size_t{2} * place]);
     return direction % 2 == 0 ? are_neighbours_[bit(direction / 2, images[lower], images[upper])]
                               : are_neighbours_[bit(direction / 2, images[upper], images[lower])];
-}
-
-std::size_t PairImages::neighbours_with_images(std::span<const Label> images) const {
-    std::size_t found = 0;
-    for (std::size_t pair = 0; pair < neighbour_count_; ++pair) {
-        found += has_image(static_cast<std::uint32_t>(pair), images) ? 1 : 0;
-    }
-    return found;
 }
 
 }  // namespace modelsynth::discrete

@@ -29,10 +29,8 @@ class PairImages {
 
     [[nodiscard]] std::size_t label_count() const { return pairs_of_.size(); }
 
-    // Of all sentences. The pairs of neighbours come first.
+    // Of the sentences.
     [[nodiscard]] std::size_t count() const { return pairs_.size(); }
-
-    [[nodiscard]] std::size_t neighbour_count() const { return neighbour_count_; }
 
     // The sentences that speak of a piece, in rising order.
     [[nodiscard]] std::span<const std::uint32_t> pairs_of(Label label) const {
@@ -42,9 +40,6 @@ class PairImages {
     // Whether the image of a sentence is true, too. Shape: images by label.
     [[nodiscard]] bool has_image(std::uint32_t pair, std::span<const Label> images) const;
 
-    // Of how many pairs of neighbours the images are neighbours.
-    [[nodiscard]] std::size_t neighbours_with_images(std::span<const Label> images) const;
-
     // How many pieces stand beside a piece in that direction.
     [[nodiscard]] std::uint32_t degree(Label label, std::size_t direction) const {
         return degrees_[label][direction];
@@ -53,6 +48,12 @@ class PairImages {
     [[nodiscard]] const std::array<Direction, kDirectionCount>& directions() const {
         return directions_;
     }
+
+    // Numbers that tell the pieces apart by their neighbours, and these by theirs, so many steps
+    // away. Those of the moved example are numbered as if it had been moved: where a map keeps all
+    // pairs, what a piece has there is what its image has here.
+    // Cost: O(steps * sentences).
+    [[nodiscard]] std::vector<std::uint64_t> colours(bool is_moved, int steps) const;
 
   private:
     struct Pair {
@@ -74,7 +75,6 @@ class PairImages {
     std::vector<bool> are_neighbours_;
     std::vector<LabelSet> allowed_on_;  // by side
     std::vector<Pair> pairs_;
-    std::size_t neighbour_count_ = 0;
     std::vector<std::vector<std::uint32_t>> pairs_of_;
     std::vector<std::array<std::uint32_t, kDirectionCount>> degrees_;
 };

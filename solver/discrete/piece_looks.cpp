@@ -21,7 +21,8 @@ PieceLook look_of(const Mesh& mesh, double unit) {
     double count = 0;
     for (const Primitive& primitive : mesh.primitives) {
         for (const Vec3& corner : primitive.positions) {
-            const std::array<double, 3> at = {corner.x / unit, corner.y / unit, corner.z / unit};
+            const std::array<double, 3> at = {
+                double{corner.x} / unit, double{corner.y} / unit, double{corner.z} / unit};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const auto value = static_cast<float>(at[axis]);
                 look.min[axis] = count == 0 ? value : std::min(look.min[axis], value);

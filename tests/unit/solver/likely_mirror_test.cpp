@@ -157,17 +157,8 @@ TEST(LikelyMirror, KeepsMostOfTheBuiltInExamples) {
             const NamePairs mirror = likely_mirror(*example, kind);
             const auto [found, all] = kept(*example, kind, full(*example, mirror));
             const std::size_t unmoved = kept_by(*example, kind, {});
-            std::printf(
-                "%s %d: unmoved %zu found %zu of %zu, %zu moved\n",
-                example->name.c_str(),
-                static_cast<int>(kind),
-                unmoved,
-                found,
-                all,
-                mirror.size()
-            );
             EXPECT_GE(found, unmoved) << example->name;
-            EXPECT_GE(found * 10, all * 6) << example->name;
+            EXPECT_GE(found * 4, all * 3) << example->name;
         }
     }
 }
