@@ -1,17 +1,15 @@
 #include "solver/discrete/likely_mirror.h"
 
+#include "solver/discrete/image_candidates.h"
 #include "solver/discrete/pair_images.h"
-#include "solver/discrete/piece_looks.h"
 #include "solver/discrete/symmetries.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -27,110 +25,7 @@ namespace {
 constexpr int kPassesMax = 8;
 // How many sentences may be looked at for each of the two beginnings.
 constexpr std::int64_t kLooksMax = std::int64_t{1} << 22;
-// Pieces are compared with so many on either side in an order in which the images are near.
-constexpr std::size_t kWindow = 192;
-constexpr std::size_t kCandidatesMax = 12;
 constexpr std::size_t kRingCandidatesMax = 4;
-// Surroundings are compared up to so many steps away.
-constexpr int kSteps = 4;
-// Looks are compared in such parts of a cell's width.
-constexpr float kLookParts = 200;
-constexpr float kUnlikeMax = 1000;
-
-// A piece that another may become.
-struct Candidate {
-    int look;    // how unlike they are, in steps too small to see
-    int doubts;  // at how many of the distances their surroundings differ
-    std::uint32_t degrees;
-    bool is_other;
-    Label image;
-
-    [[nodiscard]] auto key() const { return std::tuple(look, doubts, degrees, is_other, image); }
-
-    friend bool operator<(const Candidate& a, const Candidate& b) { return a.key() < b.key(); }
-};
-
-using Candidates = std::vector<std::vector<Candidate>>;  // by label, the likeliest first
-
-// How differently many neighbours the image has in the images of the directions.
-std::uint32_t difference_of_degrees(const PairImages& pairs, Label from, Label to) {
-    std::uint32_t sum = 0;
-    for (std::size_t d = 0; d < kDirectionCount; ++d) {
-        const std::uint32_t a = pairs.degree(from, d);
-        const std::uint32_t b = pairs.degree(to, static_cast<std::size_t>(pairs.directions()[d]));
-        sum += std::max(a, b) - std::min(a, b);
-    }
-    return sum;
-}
-
-// Labels by what no motion about an upright line changes.
-std::vector<Label> in_order_of_invariants(
-    const PairImages& pairs, const std::vector<PieceLook>& looks
-) {
-    const auto key = [&](Label label) {
-        const PieceLook& look = looks[label];
-        const auto degree = [&](Direction direction) {
-            return pairs.degree(label, static_cast<std::size_t>(direction));
-        };
-        const std::uint32_t around = degree(Direction::kEast) + degree(Direction::kWest) +
-                                     degree(Direction::kSouth) + degree(Direction::kNorth);
-        return std::tuple(
-            look.is_drawn,
-            std::lround(look.max[1] * 256),
-            std::lround(look.mean[1] * 256),
-            std::lround((look.square[0] + look.square[2]) * 256),
-            degree(Direction::kUp),
-            degree(Direction::kDown),
-            around,
-            label
-        );
-    };
-    std::vector<Label> labels(looks.size());
-    std::iota(labels.begin(), labels.end(), Label{0});
-    std::sort(labels.begin(), labels.end(), [&](Label a, Label b) { return key(a) < key(b); });
-    return labels;
-}
-
-Candidates find_candidates(const Example& example, const PairImages& pairs, Symmetry::Kind kind) {
-    const std::vector<PieceLook> looks = piece_looks(example);
-    const std::vector<Label> ordered = in_order_of_invariants(pairs, looks);
-    std::array<std::vector<std::uint64_t>, kSteps> here;
-    std::array<std::vector<std::uint64_t>, kSteps> there;
-    for (int steps = 0; steps < kSteps; ++steps) {
-        here.at(static_cast<std::size_t>(steps)) = pairs.colours(false, steps + 1);
-        there.at(static_cast<std::size_t>(steps)) = pairs.colours(true, steps + 1);
-    }
-    const auto doubts_of = [&](Label from, Label to) {
-        int doubts = 0;
-        for (std::size_t steps = 0; steps < kSteps; ++steps) {
-            doubts += there.at(steps)[from] == here.at(steps)[to] ? 0 : 1;
-        }
-        return doubts;
-    };
-    Candidates candidates(ordered.size());
-    for (std::size_t i = 0; i < ordered.size(); ++i) {
-        const Label from = ordered[i];
-        const PieceLook image = moved(looks[from], kind);
-        std::vector<Candidate>& of_it = candidates[from];
-        const std::size_t end = std::min(ordered.size(), i + kWindow + 1);
-        for (std::size_t j = i - std::min(i, kWindow); j < end; ++j) {
-            const Label to = ordered[j];
-            const float unlike = difference(image, looks[to]);
-            if (std::isfinite(unlike)) {
-                of_it.push_back(
-                    {static_cast<int>(std::min(unlike, kUnlikeMax) * kLookParts),
-                     doubts_of(from, to),
-                     difference_of_degrees(pairs, from, to),
-                     from != to,
-                     to}
-                );
-            }
-        }
-        std::sort(of_it.begin(), of_it.end());
-        of_it.resize(std::min(of_it.size(), kCandidatesMax));
-    }
-    return candidates;
-}
 
 // A step of the search: the pieces that change roles, and how.
 struct Step {
@@ -143,7 +38,9 @@ struct Step {
 // A map of pieces on its way to more pairs that have images.
 class MirrorSearch {
   public:
-    MirrorSearch(const PairImages& pairs, const Candidates& candidates, std::vector<Label> images)
+    MirrorSearch(
+        const PairImages& pairs, const ImageCandidates& candidates, std::vector<Label> images
+    )
         : pairs_(&pairs),
           candidates_(&candidates),
           images_(std::move(images)),
@@ -192,7 +89,7 @@ class MirrorSearch {
     void for_each_step(std::size_t order, Visit visit) {
         for (std::size_t i = 0; i < images_.size(); ++i) {
             const auto a = static_cast<Label>(i);
-            for (const Candidate& candidate : (*candidates_)[a]) {
+            for (const ImageCandidate& candidate : (*candidates_)[a]) {
                 if (looks_left_ <= 0) {
                     return;
                 }
@@ -236,7 +133,7 @@ class MirrorSearch {
 
     [[nodiscard]] bool is_candidate(Label from, Label to) const {
         const auto& of_it = (*candidates_)[from];
-        return std::any_of(of_it.begin(), of_it.end(), [to](const Candidate& candidate) {
+        return std::any_of(of_it.begin(), of_it.end(), [to](const ImageCandidate& candidate) {
             return candidate.image == to;
         });
     }
@@ -353,7 +250,7 @@ class MirrorSearch {
     }
 
     const PairImages* pairs_;
-    const Candidates* candidates_;
+    const ImageCandidates* candidates_;
     std::vector<Label> images_;        // by label
     std::vector<Label> origins_;       // by label, that whose image it is
     std::vector<char> has_image_;      // by sentence
@@ -365,10 +262,10 @@ class MirrorSearch {
 
 // Each piece that which it looks like, the likest first, and those of a chain that does not close
 // in time themselves.
-std::vector<Label> images_by_look(const Candidates& candidates, std::size_t order) {
-    std::vector<std::pair<Candidate, Label>> likest;
+std::vector<Label> images_by_look(const ImageCandidates& candidates, std::size_t order) {
+    std::vector<std::pair<ImageCandidate, Label>> likest;
     for (std::size_t label = 0; label < candidates.size(); ++label) {
-        for (const Candidate& candidate : candidates[label]) {
+        for (const ImageCandidate& candidate : candidates[label]) {
             likest.emplace_back(candidate, static_cast<Label>(label));
         }
     }
@@ -419,7 +316,7 @@ NamePairs likely_mirror(const Example& example, Symmetry::Kind kind) {
         return {};
     }
     const PairImages pairs(example, kind);
-    const Candidates candidates = find_candidates(example, pairs, kind);
+    const ImageCandidates candidates = find_image_candidates(example, pairs, kind);
     MirrorSearch best(pairs, candidates, images_by_look(candidates, order));
     best.improve(order);
     std::vector<Label> own(example.pieces.size());

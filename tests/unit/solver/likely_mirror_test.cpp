@@ -241,7 +241,7 @@ TEST(LikelyMirror, LeavesPiecesOnTheirSide) {
 }
 
 TEST(LikelyMirror, IsFoundInExamplesOfThousandsOfPieces) {
-    // A row of pieces, each between its own neighbours, that no map but one turns round.
+    // A row of pieces that each stand but once: more of them than can be held against each other.
     constexpr std::size_t kCount = 4096;
     std::vector<Label> cells(kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
