@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -229,7 +230,7 @@ TEST(LikelyMirror, TurnsARing) {
 TEST(LikelyMirror, LeavesPiecesOnTheirSide) {
     // What may stand on the bottom has images that may; c could be b's image but for that.
     Example example = make_example({0, 0, 0}, {}, 3);
-    for (const std::uint8_t axis : {0, 2}) {
+    for (const std::uint8_t axis : {std::uint8_t{0}, std::uint8_t{2}}) {
         for (Label a = 0; a < 3; ++a) {
             example.adjacency.push_back({axis, a, a});
         }
