@@ -246,6 +246,20 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
     assert_faults(server.request("POST", "/v1/jobs", request), request, ["/parameters/constraints"])
 
 
+@pytest.mark.parametrize("given, told", [
+    ({}, {"start": "end", "end": "start"}),
+    ({"mirror": {}}, {}),
+    ({"mirror": {"start": "end"}}, {"start": "end"}),
+], ids=["found", "own", "named"])
+def test_the_echo_tells_the_images_of_pieces(server, given, told):
+    example = {"kind": "discrete", "name": "walls",
+               "pieces": [{"name": name} for name in ("grass", "start", "wall", "end")],
+               "size": [6, 1, 3], "cells": [0] * 7 + [1, 2, 2, 3] + [0] * 7}
+    job = make_job(server, {"constraints": [{"kind": "symmetry", "reflect": "x", **given}]},
+                   example=example)
+    assert job["request"]["parameters"]["constraints"][0]["mirror"] == told
+
+
 def test_the_number_of_symmetries_is_limited(server):
     one = {"kind": "symmetry", "reflect": "x"}
     example = anything_goes("red", "green")
