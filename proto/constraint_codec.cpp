@@ -313,9 +313,11 @@ struct RuleWriter {
                 written["translate"] = write_cell(rule.translation);
                 break;
         }
-        written["mirror"] = OrderedJson::object();
-        for (const auto& [piece, image] : rule.mirror) {
-            written["mirror"][piece] = image;
+        if (rule.mirror) {
+            written["mirror"] = OrderedJson::object();
+            for (const auto& [piece, image] : *rule.mirror) {
+                written["mirror"][piece] = image;
+            }
         }
     }
 

@@ -5,6 +5,7 @@
 #include "solver/core/constraints/count_constraint.h"
 #include "solver/discrete/constraints/run_length_constraint.h"
 #include "solver/discrete/constraints/separation_constraint.h"
+#include "solver/discrete/likely_mirror.h"
 #include "solver/discrete/names.h"
 #include "solver/discrete/region.h"
 #include "solver/discrete/resemblance.h"
@@ -27,7 +28,10 @@ LabelSet complement(const LabelSet& set) {
 class ConstraintReader {
   public:
     ConstraintReader(const Example& example, const Parameters& parameters)
-        : parameters_(parameters), labels_(labels_by_name(example)), size_(*parameters.size) {}
+        : example_(example),
+          parameters_(parameters),
+          labels_(labels_by_name(example)),
+          size_(*parameters.size) {}
 
     // Fails: kTooLarge for too many tables of weights.
     [[nodiscard]] Result<void> read(Problem& problem, WeightTables& weights) const {
@@ -113,9 +117,11 @@ class ConstraintReader {
         std::vector<Symmetries::Generator> generators;
         for (const Constraint& constraint : parameters_.constraints) {
             if (const auto* symmetry = std::get_if<Symmetry>(&constraint.rule)) {
+                const NamePairs mirror =
+                    symmetry->mirror ? *symmetry->mirror : likely_mirror(example_, symmetry->kind);
                 generators.push_back(
                     {CellMap(*symmetry, constraint.region, size_, problem.periodic),
-                     label_images(labels_.size(), pairs_of(labels_, symmetry->mirror))}
+                     label_images(labels_.size(), pairs_of(labels_, mirror))}
                 );
             }
         }
@@ -126,6 +132,7 @@ class ConstraintReader {
                      );
     }
 
+    const Example& example_;
     const Parameters& parameters_;
     LabelOfName labels_;
     GridSize size_;

@@ -96,7 +96,8 @@ void find_symmetry_faults(
     std::vector<Fault>& faults
 ) {
     const std::size_t before = faults.size();
-    for (const auto& [piece, image] : symmetry.mirror) {
+    const NamePairs mirror = symmetry.mirror.value_or(NamePairs());  // what is found is no fault
+    for (const auto& [piece, image] : mirror) {
         for (const std::string& name : {piece, image}) {
             if (!labels.contains(name)) {
                 faults.push_back(
@@ -108,7 +109,7 @@ void find_symmetry_faults(
     }
     if (is_region_good && faults.size() == before) {
         if (const auto fault = find_symmetry_fault(
-                symmetry, region, size, labels.size(), pairs_of(labels, symmetry.mirror)
+                symmetry, region, size, labels.size(), pairs_of(labels, mirror)
             )) {
             faults.push_back({pointer + fault->field, fault->detail});
         }
@@ -239,8 +240,7 @@ std::vector<Fault> find_faults(const Example& example, const Parameters& paramet
         for (const auto& [name, weight] : *list) {
             if (!labels.contains(name)) {
                 faults.push_back(
-                    {"/weights/" + pointer_part(name),
-                     "the example has no piece \"" + name + "\""}
+                    {"/weights/" + pointer_part(name), "the example has no piece \"" + name + "\""}
                 );
             }
         }

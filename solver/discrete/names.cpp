@@ -54,6 +54,26 @@ Box layer(const GridSize& size, std::size_t side) {
     return box;
 }
 
+LabelSet allowed_on_side(
+    const Example& example,
+    const LabelOfName& labels,
+    std::size_t side,
+    const SideBoundary& boundary
+) {
+    const std::size_t count = example.pieces.size();
+    if (boundary.kind == BoundaryKind::kPieces) {
+        return set_of(labels, boundary.pieces);
+    }
+    if (boundary.kind == BoundaryKind::kExample && example.size.cell_count() > 0) {
+        LabelSet set(count);
+        for_each_cell(layer(example.size, side), [&](const Cell& cell) {
+            set.insert(example.cells[example.size.index(cell)]);
+        });
+        return set;
+    }
+    return LabelSet::all(count);
+}
+
 std::string name_rule(const Example& example, const MemberRule& rule) {
     return "constraint " + std::to_string(rule.constraint) + " (" +
            kRuleNames.at(rule.rule.index()) + " of " + list_names(example, rule.labels) + ")";

@@ -40,6 +40,15 @@ using LabelOfName = std::unordered_map<std::string, Label>;
 // The outermost layer of a grid on one side.
 [[nodiscard]] Box layer(const GridSize& size, std::size_t side);
 
+// What a side's boundary lets stand in its layer; free sides let everything.
+// Requires: every piece that it names is known.
+[[nodiscard]] LabelSet allowed_on_side(
+    const Example& example,
+    const LabelOfName& labels,
+    std::size_t side,
+    const SideBoundary& boundary
+);
+
 // The sides of a grid that a cell lies on: "the bottom and north sides"; empty: none.
 [[nodiscard]] std::string name_sides(const GridSize& size, const Cell& cell);
 

@@ -93,6 +93,9 @@ struct Path {
     friend bool operator==(const Path&, const Path&) = default;
 };
 
+// Pieces and their images, by name.
+using NamePairs = std::vector<std::pair<std::string, std::string>>;
+
 // Where a piece stands at a cell, its image stands at the cell's image (2007 paper, 4.1; thesis
 // 3.5.2).
 struct Symmetry {
@@ -100,8 +103,9 @@ struct Symmetry {
 
     Kind kind = Kind::kReflectX;  // a quarter turn: from the east to the north
     Cell translation = {};        // for kTranslate
-    // Pieces and their images; see label_images() for those that are not named.
-    std::vector<std::pair<std::string, std::string>> mirror = {};
+    // Pieces and their images; see label_images() for those that are not named. None: found, see
+    // likely_mirror().
+    std::optional<NamePairs> mirror = std::nullopt;
 
     friend bool operator==(const Symmetry&, const Symmetry&) = default;
 };

@@ -13,27 +13,6 @@ namespace modelsynth::discrete {
 
 namespace {
 
-// What the side's boundary lets stand in its layer; free sides let everything.
-LabelSet allowed_on_side(
-    const Example& example,
-    const LabelOfName& labels,
-    std::size_t side,
-    const SideBoundary& boundary
-) {
-    const std::size_t count = example.pieces.size();
-    if (boundary.kind == BoundaryKind::kPieces) {
-        return set_of(labels, boundary.pieces);
-    }
-    if (boundary.kind == BoundaryKind::kExample && example.size.cell_count() > 0) {
-        LabelSet set(count);
-        for_each_cell(layer(example.size, side), [&](const Cell& cell) {
-            set.insert(example.cells[example.size.index(cell)]);
-        });
-        return set;
-    }
-    return LabelSet::all(count);
-}
-
 std::vector<double> weights_of(const Example& example, const Weights& weights) {
     const std::size_t count = example.pieces.size();
     std::vector<double> values(count, 1.0);

@@ -1,6 +1,5 @@
 #include "solver/discrete/symmetries.h"
 
-
 #include "solver/core/result.h"
 #include "solver/discrete/region.h"
 
@@ -20,21 +19,6 @@ bool is_box_alone(const Region& region) {
 // What a turn or reflection leaves in place.
 Box middle_of(const Region& region, const GridSize& model) {
     return is_box_alone(region) ? *region.box : Box::whole(model);
-}
-
-// How often the cells have to be moved until all are back; 0: never for a translation.
-std::size_t order_of(Symmetry::Kind kind) {
-    switch (kind) {
-        case Symmetry::Kind::kReflectX:
-        case Symmetry::Kind::kReflectZ:
-        case Symmetry::Kind::kHalfTurn:
-            return 2;
-        case Symmetry::Kind::kQuarterTurn:
-            return 4;
-        case Symmetry::Kind::kTranslate:
-            return 0;
-    }
-    return 0;
 }
 
 const char* field_of(Symmetry::Kind kind) {
@@ -121,6 +105,20 @@ std::optional<Site> CellMap::moved(Site site, bool backwards) const {
         return std::nullopt;
     }
     return image;
+}
+
+std::size_t order_of(Symmetry::Kind kind) {
+    switch (kind) {
+        case Symmetry::Kind::kReflectX:
+        case Symmetry::Kind::kReflectZ:
+        case Symmetry::Kind::kHalfTurn:
+            return 2;
+        case Symmetry::Kind::kQuarterTurn:
+            return 4;
+        case Symmetry::Kind::kTranslate:
+            return 0;
+    }
+    return 0;
 }
 
 std::optional<SymmetryFault> find_symmetry_fault(

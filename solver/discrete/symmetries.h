@@ -49,6 +49,9 @@ class CellMap {
     std::vector<std::uint8_t> applies_;  // by cell; empty: everywhere
 };
 
+// How often the cells have to be moved until all are back; 0: never for a translation.
+[[nodiscard]] std::size_t order_of(Symmetry::Kind kind);
+
 // What is wrong with a symmetry, and with which of its fields ("/rotate"): a quarter turn of what
 // is not as wide as deep, images that are no one-to-one map or do not come back as the cells do.
 // Requires: the region's box lies in the model; every piece that `mirror` names is known.

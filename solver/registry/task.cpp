@@ -11,6 +11,7 @@
 #include "solver/continuous/warnings.h"
 #include "solver/discrete/analysis/infallibility.h"
 #include "solver/discrete/faults.h"
+#include "solver/discrete/likely_mirror.h"
 #include "solver/discrete/scene.h"
 #include "solver/discrete/synthesis.h"
 #include "solver/registry/model_spaces.h"
@@ -116,6 +117,7 @@ Parameters with_defaults(const Parameters& parameters, const Example& example) {
             [&](const DiscreteExample& grid) -> Parameters {
                 const auto& given = std::get<discrete::Parameters>(parameters);
                 discrete::Parameters filled = discrete::fill_defaults(given, *grid);
+                discrete::fill_mirrors(*grid, filled);
                 if (!given.blocks && is_made_in_one_pass(filled, *grid)) {
                     filled.blocks.emplace(std::nullopt);
                 }

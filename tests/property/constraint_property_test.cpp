@@ -1,5 +1,6 @@
 #include "solver/core/random.h"
 #include "solver/discrete/faults.h"
+#include "solver/discrete/likely_mirror.h"
 #include "solver/discrete/problem.h"
 #include "solver/discrete/synthesis.h"
 #include "tests/support/case_count.h"
@@ -152,7 +153,9 @@ class CaseMaker {
         Symmetry made = {kMoves.at(static_cast<std::size_t>(below(5)))};
         made.translation = {1 + below(4), below(2), below(4) - 2};
         if (below(2) == 0 && example.pieces.size() > 1) {
-            made.mirror = {{example.pieces[0].name, example.pieces[1].name}};
+            made.mirror = NamePairs{{example.pieces[0].name, example.pieces[1].name}};
+        } else {
+            made.mirror = below(2) == 0 ? NamePairs() : likely_mirror(example, made.kind);
         }
         return made;
     }

@@ -155,7 +155,7 @@ class Oracle:
         return tuple(moved) if tuple(moved) in self.at else None
 
     def _symmetry(self, constraint, places, members):
-        """For a mirror of pairs, each named once or both ways."""
+        """For a mirror of pairs, each named once or both ways, or of all that are not their own."""
         mirror = constraint.get("mirror", {})
         image = {**{b: a for a, b in mirror.items()}, **mirror}
         for place in places:

@@ -35,7 +35,8 @@ def test_the_guides_request_gives_what_it_asks_for(server, request_, seed):
     oracle = Oracle(labels, echoed["boundary"])
     assert len(echoed["constraints"]) == len(request_["parameters"]["constraints"])
     for asked, told in zip(request_["parameters"]["constraints"], echoed["constraints"]):
-        assert oracle.violation(asked) is None, asked
+        found = {"mirror": told["mirror"]} if told["kind"] == "symmetry" else {}
+        assert oracle.violation({**found, **asked}) is None, asked
         assert _tells(told, asked), "the echo tells something else"
     example = request_["example"]
     if isinstance(example, str):
@@ -243,6 +244,20 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
     assert make_job(server, {"constraints": [one] * 32})["state"] == "succeeded"
     request = job_request({"constraints": [one] * 33})
     assert_faults(server.request("POST", "/v1/jobs", request), request, ["/parameters/constraints"])
+
+
+@pytest.mark.parametrize("given, told", [
+    ({}, {"start": "end", "end": "start"}),
+    ({"mirror": {}}, {}),
+    ({"mirror": {"start": "end"}}, {"start": "end"}),
+], ids=["found", "own", "named"])
+def test_the_echo_tells_the_images_of_pieces(server, given, told):
+    example = {"kind": "discrete", "name": "walls",
+               "pieces": [{"name": name} for name in ("grass", "start", "wall", "end")],
+               "size": [6, 1, 3], "cells": [0] * 7 + [1, 2, 2, 3] + [0] * 7}
+    job = make_job(server, {"constraints": [{"kind": "symmetry", "reflect": "x", **given}]},
+                   example=example)
+    assert job["request"]["parameters"]["constraints"][0]["mirror"] == told
 
 
 def test_the_number_of_symmetries_is_limited(server):

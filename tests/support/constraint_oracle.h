@@ -347,7 +347,8 @@ class ConstraintOracle {
         return size_.contains(to) ? std::optional(to) : std::nullopt;
     }
 
-    // Requires: a mirror of pairs, each named once.
+    // Requires: a mirror of pairs, each named once, or one that names all that
+    // are not their own; none left to be found.
     Fault check(
         const discrete::Symmetry& rule,
         const discrete::Constraint& constraint,
@@ -364,10 +365,16 @@ class ConstraintOracle {
                     std::size_t>(cell.x + size_.x * (cell.z + size_.z * cell.y))]]
                 .name;
         };
+        const auto mirror = rule.mirror.value_or(discrete::NamePairs());
         const auto image_of = [&](const std::string& name) {
-            for (const auto& [a, b] : rule.mirror) {
-                if (name == a || name == b) {
-                    return name == a ? b : a;
+            for (const auto& [a, b] : mirror) {
+                if (name == a) {
+                    return b;
+                }
+            }
+            for (const auto& [a, b] : mirror) {
+                if (name == b) {
+                    return a;
                 }
             }
             return name;

@@ -104,7 +104,7 @@ class CaseMaker {
                 made.rule = Probability{below(2) * 0.5};
                 break;
             case 2:
-                made = {Symmetry{}, {}, {}};
+                made = {Symmetry{Symmetry::Kind::kReflectX, {}, NamePairs()}, {}, {}};
                 break;
             case 4: {
                 if (!with_member_rules) {
