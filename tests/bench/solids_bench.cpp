@@ -42,6 +42,7 @@ constexpr std::array kWork = {
     Work{"stairs", {40, 12, 40}, ""},
     Work{"pentagons", {38, 5, 38}, "2 004, 1.1 min"},
     Work{"oil_platform", {34, 12, 34}, "1 377, 0.5 min"},
+    Work{"domes", {20, 9, 20}, "324, 0.1 min"},
     Work{"buildings", {40, 8, 40}, "2 230, 1.4 min"},
     Work{"spaceships", {46, 12, 46}, "4 164, 0.6 min"},
     Work{"roads", {150, 6, 150}, "6 888, 0.2 min"},
