@@ -250,7 +250,10 @@ struct Totals {
 // Positions are floats: how wrong sums of such triangles may be.
 bool are_near(double a, double b) { return std::abs(a - b) <= 1e-4 * (1 + std::abs(a)); }
 
-Totals check_primitive(const Primitive& part, const std::string& what, FaultList& faults) {
+// `least_cosine`: of the angle between a triangle and the normals given for its corners.
+Totals check_primitive(
+    const Primitive& part, const std::string& what, double least_cosine, FaultList& faults
+) {
     std::map<std::pair<Place, Place>, int> balance;
     Totals totals;
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
@@ -272,7 +275,7 @@ Totals check_primitive(const Primitive& part, const std::string& what, FaultList
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3& given = part.normals[part.indices[i + k]];
             const Point normal(given.x, given.y, given.z);
-            if (area.norm() > 1e-3 && normal.dot(area.normalized()) < 1 - 1e-4) {
+            if (area.norm() > 1e-3 && normal.dot(area.normalized()) < least_cosine) {
                 faults.add("a triangle of " + what + " looks elsewhere than its normal");
             }
         }
@@ -293,6 +296,14 @@ void check_scene(
     const std::vector<SpacePolygon>& polygons,
     FaultList& faults
 ) {
+    // Shapes, which stand in for boxes, are smooth, and closed; how large they are is not known
+    // here.
+    std::set<std::uint32_t> of_shapes;
+    for (const continuous::ObjectType& object : example.objects) {
+        if (object.shape != nullptr) {
+            of_shapes.insert(object.material);
+        }
+    }
     std::map<std::uint32_t, Totals> expected;
     for (const SpacePolygon& polygon : polygons) {
         Totals& totals = expected[example.objects[polygon.solid - 1].material];
@@ -303,12 +314,19 @@ void check_scene(
     for (const Mesh& mesh : scene.kit->meshes) {
         for (const Primitive& part : mesh.primitives) {
             const std::string what = "material " + std::to_string(part.material);
-            const Totals totals = check_primitive(part, what, faults);
+            const double least_cosine = of_shapes.contains(part.material) ? 0.5 : 1 - 1e-4;
+            const Totals totals = check_primitive(part, what, least_cosine, faults);
             found[part.material].area += totals.area;
             found[part.material].volume += totals.volume;
         }
     }
     for (const auto& [material, totals] : expected) {
+        if (of_shapes.contains(material)) {
+            if (found[material].volume <= 0 || found[material].volume > totals.volume) {
+                faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
+            }
+            continue;
+        }
         if (!are_near(totals.area, found[material].area) ||
             !are_near(totals.volume, found[material].volume)) {
             faults.add(
