@@ -4,18 +4,27 @@
 //   solids_bench [--seeds N] [NAME ...]
 //
 // Columns: reading the example and preparing the problem, once; then medians over seeds of the time
-// to the first block and to the whole model, and of the surface read from it.
+// to the first block and to the whole model, and of the surface read from it. Without names also
+// one of 100 000 polygons, with the peak of memory, and how the work grows with planes and
+// directions.
 
 #include "solver/continuous/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
+#include "solver/examples/solids/shapes.h"
+
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace modelsynth {
@@ -129,11 +138,97 @@ void run(const Work& work, std::uint64_t seeds) {
     std::fflush(stdout);
 }
 
-// How the work grows with planes per family, at one example (thesis 4.5.7: n^3).
-void run_growth(std::uint64_t seeds) {
-    for (const double side : {10.0, 20.0, 40.0}) {
-        run({"houses", {side, side / 2, side}, "growth"}, seeds);
+// Towers of a plan with so many equal sides, wide and narrow ones.
+std::shared_ptr<const continuous::ExampleReading> read_towers(int sides) {
+    continuous::Example example;
+    example.name = "towers";
+    example.materials = {{"grass", {}}, {"stone", {}}};
+    example.objects = {{"grass", 0}, {"stone", 1}};
+    example.ground = 1;
+    for (const auto& [radius, at, height] :
+         {std::array{2.0, 0.0, 3.0}, std::array{3.5, 12.0, 2.0}}) {
+        examples::Outline outline;
+        for (int i = 0; i < sides; ++i) {
+            const double angle = std::numbers::pi * (2 * i + 1) / sides;
+            outline.push_back({at + radius * std::cos(angle), radius * std::sin(angle)});
+        }
+        example.polyhedra.push_back(examples::prism_upwards(2, outline, 0, height));
     }
+    example.density = 0.5;
+    return continuous::ExampleReading::make(std::move(example)).value();
+}
+
+struct Growth {
+    double cubed;  // of what grows
+    double vertices = 0;
+    double seconds = 0;
+};
+
+Growth grow(int sides, double extent, std::uint64_t seeds, double what_grows) {
+    const auto reading = read_towers(sides);
+    continuous::Parameters parameters;
+    parameters.size = {extent, extent, extent};
+    parameters = fill_defaults(parameters, reading->example());
+    const auto problem = continuous::make_problem(reading, parameters);
+    Growth growth = {what_grows * what_grows * what_grows};
+    if (!problem) {
+        return growth;
+    }
+    std::vector<double> solved;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        FirstBlock observer;
+        const auto begun = Clock::now();
+        if (continuous::synthesise(*problem, parameters, seed, observer, {})) {
+            solved.push_back(seconds_since(begun));
+        }
+    }
+    growth.vertices = static_cast<double>(problem->arrangement.vertex_count());
+    growth.seconds = solved.empty() ? 0 : median(solved);
+    return growth;
+}
+
+// A bar twice as long for twice the share of the cube; all are as long as the first where the work
+// grows with the cube.
+void print_growth(const char* what, double value, const Growth& growth, const Growth& first) {
+    const double share = growth.seconds / growth.cubed / (first.seconds / first.cubed);
+    const auto length = static_cast<int>(std::clamp(std::lround(20 * share), 0L, 60L));
+    std::printf(
+        "| %s %4.0f | %8.0f | %7.4f | %5.2f | %-60s |\n",
+        what,
+        value,
+        growth.vertices,
+        growth.seconds,
+        share,
+        std::string(static_cast<std::size_t>(length), '#').c_str()
+    );
+    std::fflush(stdout);
+}
+
+// How the work grows with planes per family, n, and with families, m (thesis 4.5.7: m^3 n^3).
+void run_growth(std::uint64_t seeds) {
+    std::printf(
+        "\n| towers | vertices | solve s | share | seconds by the cube of n, at m = 5; of m, at n "
+        "= 12 "
+        "%13s|\n|--------|----------|---------|-------|-%s-|\n",
+        "",
+        std::string(60, '-').c_str()
+    );
+    const auto first_n = grow(8, 8, seeds, 8);
+    for (const double n : {8.0, 12.0, 16.0, 24.0, 32.0}) {
+        print_growth("n", n, grow(8, n, seeds, n), first_n);
+    }
+    const auto first_m = grow(4, 12, seeds, 3);
+    for (const int sides : {4, 6, 8, 12}) {
+        const double m = sides / 2 + 1;
+        print_growth("m", m, grow(sides, 12, seeds, m), first_m);
+    }
+}
+
+void run_large() {
+    run({"skyscrapers", {240, 8, 240}, "100 000 polyg."}, 1);
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    std::printf("\npeak memory after all of these: %ld MB\n", usage.ru_maxrss / 1024);
 }
 
 void run_all(std::uint64_t seeds, const std::vector<std::string>& names) {
@@ -143,6 +238,7 @@ void run_all(std::uint64_t seeds, const std::vector<std::string>& names) {
         }
     }
     if (names.empty()) {
+        run_large();
         run_growth(seeds);
     }
 }

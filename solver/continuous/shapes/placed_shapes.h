@@ -10,7 +10,7 @@
 namespace modelsynth::continuous {
 
 // So many triangles of shapes at most in a model; beyond that all of them are left boxes.
-inline constexpr std::size_t kShapeTrianglesMax = 4'000'000;
+inline constexpr std::size_t kShapeTrianglesMax = 1'000'000;
 
 struct PlacedShape {
     ObjectId object = 1;

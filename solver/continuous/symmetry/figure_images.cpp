@@ -5,6 +5,7 @@
 #include "solver/core/label_images.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -15,6 +16,8 @@ namespace modelsynth::continuous {
 namespace {
 
 constexpr int kPassesMax = 8;
+// Looks at images of figures, besides as many for what is found: some tenths of a second.
+constexpr std::int64_t kLooksMax = std::int64_t{1} << 19;
 
 std::vector<Tope> tope_images(const Topes& topes, const Eigen::Matrix3d& turn) {
     std::vector<FamilyImage> families;
@@ -82,7 +85,7 @@ class MirrorSearch {
         for (int pass = 0; pass < kPassesMax && is_better; ++pass) {
             std::vector<std::tuple<std::ptrdiff_t, std::size_t, std::size_t>> gains;
             for (std::size_t a = 1; a < images_.size(); ++a) {
-                for (std::size_t b = a + 1; b < images_.size(); ++b) {
+                for (std::size_t b = a + 1; b < images_.size() && looks_left_ > 0; ++b) {
                     const std::ptrdiff_t gain = gain_of(a, b, in_pairs_only);
                     if (gain > 0) {
                         gains.emplace_back(-gain, a, b);
@@ -131,6 +134,7 @@ class MirrorSearch {
         std::swap(images_[a], images_[b]);
         std::ptrdiff_t gain = 0;
         for_each_figure_with(a, b, [&](Label label) {
+            --looks_left_;
             gain += std::ptrdiff_t{mover_.image(label, images_) != kNoLabel} -
                     std::ptrdiff_t{has_image_[label]};
         });
@@ -165,6 +169,7 @@ class MirrorSearch {
     std::vector<std::vector<Label>> figures_with_;  // by object, in rising order
     std::vector<bool> has_image_;                   // by figure
     std::vector<Label> images_;                     // by object
+    std::int64_t looks_left_ = kLooksMax;
 };
 
 }  // namespace

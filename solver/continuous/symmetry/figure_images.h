@@ -18,7 +18,7 @@ namespace modelsynth::continuous {
 // Which objects become which, so that as many figures of the example as can be found have images
 // in it: corners of the left become those of the right. The objects that are not named stay.
 // Pairs are exchanged, the best first, as long as that helps. Requires: every family has an image.
-// Cost: objects * figures * topes, times the passes, which are few.
+// Cost: objects * figures * topes, times the passes, which are few; bounded.
 [[nodiscard]] NamePairs likely_mirror(const ExampleReading& reading, const SymmetryRule& rule);
 
 // Gives symmetries that name no images those of likely_mirror(), where every family has an image.

@@ -204,9 +204,9 @@ TEST(PlacedShapes, LeaveWhatIsNoBoxAsItIs) {
 TEST(PlacedShapes, AreBoxesWhereTheyWouldBeTooManyTriangles) {
     const Example example = with_shape({}, {});  // 12 segments: 48 triangles
     std::vector<Polyhedron> boxes;
-    for (int x = 0; x < 84'000; ++x) {
+    for (int x = 0; x < 21'000; ++x) {
         boxes.push_back(box(2, {2.0 * x, 0, 0}, {2.0 * x + 1, 1, 1}));
-        if (boxes.size() == 1 || x == 83'999) {
+        if (boxes.size() == 1 || x == 20'999) {
             const PlacedShapes placed = place_shapes(example, surface_of(boxes));
             EXPECT_EQ(placed.are_too_many, boxes.size() > 1);
             EXPECT_EQ(placed.shapes.size(), placed.are_too_many ? 0U : 1U);
