@@ -213,8 +213,8 @@ void run_growth(std::uint64_t seeds) {
         "",
         std::string(60, '-').c_str()
     );
-    const auto first_n = grow(8, 8, seeds, 8);
-    for (const double n : {8.0, 12.0, 16.0, 24.0, 32.0}) {
+    const auto first_n = grow(8, 12, seeds, 12);
+    for (const double n : {12.0, 16.0, 24.0, 32.0, 48.0}) {
         print_growth("n", n, grow(8, n, seeds, n), first_n);
     }
     const auto first_m = grow(4, 12, seeds, 3);
