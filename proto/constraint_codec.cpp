@@ -88,6 +88,7 @@ Rule read_symmetry(ObjectReader& reader, const Value& whole, const RequestLimits
     if (kinds != 1) {
         whole.fault("symmetry needs one of \"reflect\", \"translate\" and \"rotate\"");
     }
+    symmetry.mirror.emplace();
     if (const auto mirror = reader.optional("mirror")) {
         symmetry.mirror = read_mirror(*mirror, limits);
     }
@@ -339,12 +340,15 @@ struct RuleWriter {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> read_mirror(
+std::optional<std::vector<std::pair<std::string, std::string>>> read_mirror(
     const Value& value, const RequestLimits& limits
 ) {
+    if (value.json() == "auto") {
+        return std::nullopt;
+    }
     std::vector<std::pair<std::string, std::string>> mirror;
     if (!value.json().is_object()) {
-        value.fault("must be an object that names images by what they are of");
+        value.fault("must be an object that names images by what they are of, or \"auto\"");
         return mirror;
     }
     for (const auto& [name, json] : value.json().items()) {

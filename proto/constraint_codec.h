@@ -6,6 +6,7 @@
 #include "proto/limits.h"
 #include "solver/discrete/parameters.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +18,8 @@ namespace modelsynth::proto {
     const Value& value, const RequestLimits& limits
 );
 
-// The field `mirror` of a symmetry.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> read_mirror(
+// The field `mirror` of a symmetry; nothing where the images are to be found.
+[[nodiscard]] std::optional<std::vector<std::pair<std::string, std::string>>> read_mirror(
     const Value& value, const RequestLimits& limits
 );
 

@@ -36,7 +36,9 @@ def test_the_guides_request_gives_what_it_asks_for(server, request_, seed):
     assert len(echoed["constraints"]) == len(request_["parameters"]["constraints"])
     for asked, told in zip(request_["parameters"]["constraints"], echoed["constraints"]):
         found = {"mirror": told["mirror"]} if told["kind"] == "symmetry" else {}
-        assert oracle.violation({**found, **asked}) is None, asked
+        assert oracle.violation({**asked, **found}) is None, asked
+        if asked.get("mirror") == "auto":
+            asked = {**asked, **found}
         assert _tells(told, asked), "the echo tells something else"
     example = request_["example"]
     if isinstance(example, str):
@@ -66,12 +68,12 @@ def test_without_the_constraint_some_model_violates_it(server, request_):
     """Or the checks above would show nothing."""
     parameters = {name: value for name, value in request_["parameters"].items()
                   if name != "constraints"}
+    told = make(server, request_)[0]["request"]["parameters"]["constraints"]
     violated = []
     for seed in range(1, 9):
         job, labels = make(server, {**request_, "seed": seed, "parameters": parameters})
         oracle = Oracle(labels, job["request"]["parameters"]["boundary"])
-        violated += [one for one in request_["parameters"]["constraints"]
-                     if oracle.violation(one) is not None]
+        violated += [one for one in told if oracle.violation(one) is not None]
     assert violated or all(_asks_nothing_sharp(one)
                            for one in request_["parameters"]["constraints"])
 
@@ -198,6 +200,7 @@ RED = {"pieces": ["red"]}
     ({"kind": "symmetry", "reflect": "x", "pieces": ["red"]}, ["/pieces"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"red": "purple"}}, ["/mirror/red"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"red": 1}}, ["/mirror/red"]),
+    ({"kind": "symmetry", "reflect": "x", "mirror": "found"}, ["/mirror"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"red": "blue", "green": "blue"}},
      ["/mirror"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"red": "green", "green": "blue"}},
@@ -247,8 +250,8 @@ def test_the_number_of_constraints_that_span_the_model_is_limited(server):
 
 
 @pytest.mark.parametrize("given, told", [
-    ({}, {"start": "end", "end": "start"}),
-    ({"mirror": {}}, {}),
+    ({"mirror": "auto"}, {"start": "end", "end": "start"}),
+    ({}, {}),
     ({"mirror": {"start": "end"}}, {"start": "end"}),
 ], ids=["found", "own", "named"])
 def test_the_echo_tells_the_images_of_pieces(server, given, told):

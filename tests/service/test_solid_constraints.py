@@ -189,6 +189,7 @@ def test_what_the_example_says_hangs_together_does_unless_it_is_told_otherwise(s
     ({"kind": "symmetry", "reflect": "x", "objects": ["wall"]}, ["objects"]),
     ({"kind": "symmetry", "reflect": "x", "box": WEST}, ["box"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": ["wall"]}, ["mirror"]),
+    ({"kind": "symmetry", "reflect": "x", "mirror": "none"}, ["mirror"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"wall": 1}}, ["mirror/wall"]),
     ({"kind": "symmetry", "reflect": "x", "mirror": {"wall": "door"}}, ["mirror/wall"]),
     ({"objects": ["wall"]}, ["kind"]),
