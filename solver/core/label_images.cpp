@@ -60,8 +60,9 @@ Relations relations_with_images(
     for (std::size_t label = 0; label < relations.label_count(); ++label) {
         const auto near = static_cast<Label>(label);
         for (RelationId r = 0; r < relations.count(); r += 2) {
-            for_each_label(relations.row(r, near), [&](Label far) { extended.allow(r, near, far); }
-            );
+            for_each_label(relations.row(r, near), [&](Label far) {
+                extended.allow(r, near, far);
+            });
         }
         for (std::size_t i = 0; i < images.size(); ++i) {
             const auto to_image = static_cast<RelationId>(relations.count() + 2 * i);

@@ -20,8 +20,8 @@ namespace modelsynth {
     std::size_t label_count, std::span<const std::pair<Label, Label>> given
 );
 
-// What is wrong with such a list, if anything is: two labels with the same image, or, where steps is
-// not 0, one that does not come back to itself after so many.
+// What is wrong with such a list, if anything is: two labels with the same image, or, where steps
+// is not 0, one that does not come back to itself after so many.
 [[nodiscard]] std::optional<std::string> find_image_fault(
     std::size_t label_count, std::span<const std::pair<Label, Label>> given, std::size_t steps
 );
