@@ -154,9 +154,9 @@ class RequestReader {
         if (number) {
             request_.solver = kSolvers[*number];
         }
-        if (earlier_ && !solver) {
-            request_.solver = earlier_->solver;
-        } else if (earlier_ && number && request_.solver != earlier_->solver) {
+        if (earlier_ && !number) {
+            request_.solver = earlier_->solver;  // also where another one is meant that is none
+        } else if (earlier_ && request_.solver != earlier_->solver) {
             solver->fault("is not that of the job to start from");
             earlier_.reset();
         }

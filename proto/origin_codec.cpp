@@ -54,7 +54,7 @@ std::optional<std::array<double, 3>> read_corner(const Value& value) {
     return std::array{point->x(), point->y(), point->z()};
 }
 
-std::vector<Fault> find_grid_faults(const discrete::Origin& origin, const GridSize& model) {
+std::vector<Fault> find_faults_in_grid(const discrete::Origin& origin, const GridSize& model) {
     std::vector<Fault> faults;
     if (origin.size == GridSize{}) {
         return faults;
@@ -72,7 +72,7 @@ std::vector<Fault> find_grid_faults(const discrete::Origin& origin, const GridSi
     return faults;
 }
 
-std::vector<Fault> find_solid_faults(
+std::vector<Fault> find_faults_in_solids(
     const Task& task, const continuous::Origin& origin, const continuous::Parameters* earlier
 ) {
     if (origin.size == continuous::Origin{}.size) {
@@ -211,11 +211,11 @@ std::vector<Fault> find_origin_faults(
     const Task& task, const Origin& origin, const Parameters* earlier
 ) {
     if (const auto* grid = std::get_if<discrete::Origin>(&origin)) {
-        return find_grid_faults(*grid, model_size(task.parameters));
+        return find_faults_in_grid(*grid, model_size(task.parameters));
     }
     const auto* before =
         earlier == nullptr ? nullptr : std::get_if<continuous::Parameters>(earlier);
-    return find_solid_faults(task, std::get<continuous::Origin>(origin), before);
+    return find_faults_in_solids(task, std::get<continuous::Origin>(origin), before);
 }
 
 }  // namespace modelsynth::proto
