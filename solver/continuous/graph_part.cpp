@@ -39,10 +39,4 @@ GraphPart part_of(
     return {std::move(inner), std::move(vertices), std::move(outward)};
 }
 
-GraphPart part_of(const Arrangement& arrangement, const Box& cells, const Symmetries* symmetries) {
-    std::vector<Site> vertices;
-    arrangement.for_each_vertex(cells, [&](Site site) { vertices.push_back(site); });
-    return part_of(arrangement, std::move(vertices), symmetries);
-}
-
 }  // namespace modelsynth::continuous

@@ -14,9 +14,4 @@ namespace modelsynth::continuous {
     const Arrangement& arrangement, std::vector<Site> vertices, const Symmetries* symmetries
 );
 
-// Those of a box of cells.
-[[nodiscard]] GraphPart part_of(
-    const Arrangement& arrangement, const Box& cells, const Symmetries* symmetries
-);
-
 }  // namespace modelsynth::continuous

@@ -5,6 +5,7 @@
 #include "solver/continuous/model_planes.h"
 #include "solver/continuous/problem.h"
 #include "solver/continuous/reading.h"
+#include "solver/continuous/symmetry/plane_images.h"
 #include "solver/continuous/vertex_finder.h"
 
 #include <algorithm>
@@ -35,11 +36,6 @@ Parameters parameters_of(const Parameters& parameters, const Origin& origin) {
         }
     }
     return older;
-}
-
-bool is_among(const PlaneOffsets& offsets, double offset, double tolerance) {
-    const auto next = std::lower_bound(offsets.begin(), offsets.end(), offset - tolerance);
-    return next != offsets.end() && *next <= offset + tolerance;
 }
 
 double tolerance_of(const Parameters& parameters) {
@@ -76,12 +72,11 @@ std::vector<Fault> find_origin_faults(
     for (std::size_t family = 0; family < planes.offsets.size(); ++family) {
         const double moved = reading.topes().normals()[family].dot(place_of(origin));
         for (const double offset : older.offsets[family]) {
-            if (!is_among(planes.offsets[family], offset + moved, tolerance)) {
+            if (!has_plane_at(planes.offsets[family], offset + moved, tolerance)) {
                 faults.push_back(
                     {"/from/at",
-                     "the planes of the model to start from would lie between those of the new "
-                     "one; "
-                     "whole spacings help"}
+                     "the older model's planes would lie between those of the new one; whole "
+                     "spacings help"}
                 );
                 return faults;
             }

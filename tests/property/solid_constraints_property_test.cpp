@@ -3,7 +3,6 @@
 
 #include "solver/continuous/connections.h"
 #include "solver/continuous/faults.h"
-#include "solver/continuous/graph_part.h"
 #include "solver/continuous/skeleton.h"
 #include "solver/continuous/surface.h"
 #include "solver/continuous/symmetry/figure_images.h"
@@ -389,10 +388,11 @@ void expect_counted(
     Connections anew(problem.reading->figures(), skeleton, free);
     followed.start(observer.initial_model);
     for (std::size_t i = 0; i < observer.models.size(); ++i) {
-        followed.enter(
-            part_of(problem.arrangement, observer.reports[i].region, problem.symmetries.get())
-                .sites()
-        );
+        std::vector<Site> changed;
+        problem.arrangement.for_each_vertex(observer.reports[i].region, [&](Site site) {
+            changed.push_back(site);
+        });
+        followed.enter(changed);
         ASSERT_TRUE(followed.accepts(observer.models[i]));
         anew.start(observer.models[i]);
         for (std::size_t c = 0; c < free.size(); ++c) {

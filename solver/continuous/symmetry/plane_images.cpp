@@ -10,6 +10,11 @@ constexpr double kSamePlace = 1e-6;  // of the model's extent
 
 }  // namespace
 
+bool has_plane_at(const PlaneOffsets& planes, double offset, double tolerance) {
+    const auto next = std::lower_bound(planes.begin(), planes.end(), offset - tolerance);
+    return next != planes.end() && *next <= offset + tolerance;
+}
+
 std::optional<FamilyImage> family_image(
     const Topes& topes, std::size_t family, const Eigen::Matrix3d& turn
 ) {
@@ -42,10 +47,8 @@ std::optional<double> plane_without_image(
     const double tolerance = kSamePlace * (high - low);
     for (const double offset : planes[family]) {
         const double moved = sign * offset + normal.dot(motion.shift);
-        const auto next = std::lower_bound(others.begin(), others.end(), moved - tolerance);
-        const bool is_plane = next != others.end() && *next < moved + tolerance;
         const bool is_inside = moved > low + tolerance && moved < high - tolerance;
-        if (is_inside && !is_plane) {
+        if (is_inside && !has_plane_at(others, moved, tolerance)) {
             return offset;
         }
     }

@@ -13,6 +13,9 @@
 
 namespace modelsynth::continuous {
 
+// Whether one of a family's planes lies within the tolerance of an offset.
+[[nodiscard]] bool has_plane_at(const PlaneOffsets& planes, double offset, double tolerance);
+
 // The family that a family's planes become, and whether its normal turns round.
 struct FamilyImage {
     std::size_t family = 0;
