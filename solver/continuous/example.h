@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/continuous/decoration/decoration.h"
 #include "solver/mesh/mesh.h"
 
 #include <Eigen/Core>
@@ -44,6 +45,7 @@ struct ObjectType {
     std::shared_ptr<const Shape> shape = nullptr;  // null: it looks like its solids
     // Not kEmpty: no object of its own, but what was cut off that one's boxes; see cut_boxes().
     ObjectId rest_of = kEmpty;
+    std::vector<Decoration> decorations = {};  // of its edges and corners in models
 
     friend bool operator==(const ObjectType&, const ObjectType&) = default;
 };

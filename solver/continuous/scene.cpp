@@ -1,5 +1,7 @@
 #include "solver/continuous/scene.h"
 
+#include "solver/continuous/decoration/decoration_meshes.h"
+#include "solver/continuous/decoration/placed_decorations.h"
 #include "solver/continuous/families.h"
 #include "solver/continuous/shapes/placed_shapes.h"
 #include "solver/continuous/triangulation/triangulation.h"
@@ -210,6 +212,34 @@ class MeshBuilder {
     std::vector<std::size_t> primitive_of_material_;
 };
 
+// Of a part of the model what has its place there, and that whole.
+void draw_decorations(
+    const Example& example,
+    const PlacedDecorations& decorations,
+    const Bounds* part,
+    MeshBuilder& builder
+) {
+    const auto material_of = [&example](ObjectId object, ObjectId look) {
+        return example.objects[(look == kEmpty ? object : look) - 1U].material;
+    };
+    for (const Sweep& sweep : decorations.sweeps) {
+        if (part != nullptr && !is_in_part(place_of(sweep), *part)) {
+            continue;
+        }
+        const std::uint32_t material = material_of(sweep.object, sweep.decoration->look);
+        const SweptMesh mesh = mesh_of(sweep);
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            builder.add(material, mesh.corners, {mesh.faces[f]}, mesh.normals[f]);
+        }
+    }
+    for (const PlacedMesh& mesh : decorations.meshes) {
+        if (part == nullptr || is_in_part(mesh.at, *part)) {
+            const std::uint32_t material = material_of(mesh.object, mesh.decoration->look);
+            builder.add_triangles(material, triangles_of(mesh), nullptr);
+        }
+    }
+}
+
 Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* part) {
     const Example& example = reading.example();
     MeshBuilder builder(example, "model");
@@ -241,6 +271,12 @@ Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* 
         const ObjectType& object = example.objects[one.object - 1U];
         builder.add_triangles(object.material, triangles_of(*object.shape, one.box), part);
     }
+    draw_decorations(
+        example,
+        place_decorations(example, reading.topes().normals(), surface, placed),
+        part,
+        builder
+    );
     return builder.finish();
 }
 

@@ -1,5 +1,6 @@
 #include "solver/registry/task.h"
 
+#include "solver/continuous/decoration/placed_decorations.h"
 #include "solver/continuous/faults.h"
 #include "solver/continuous/problem_cache.h"
 #include "solver/continuous/reading.h"
@@ -236,10 +237,19 @@ Result<Finished> run_continuous(
     const continuous::Surface surface = continuous::make_surface(**problem, made->labels);
     made->stats.polygons = surface.polygons.size();
     made->stats.warnings = continuous::warnings_of(**problem);
-    if (continuous::place_shapes(solids->example(), surface).are_too_many) {
+    const continuous::PlacedShapes shapes = continuous::place_shapes(solids->example(), surface);
+    if (shapes.are_too_many) {
         made->stats.warnings.emplace_back(
             "shapes would come to more than " + std::to_string(continuous::kShapeTrianglesMax) +
             " triangles, so that boxes stand in their places"
+        );
+    }
+    const auto normals = solids->topes().normals();
+    if (continuous::place_decorations(solids->example(), normals, surface, shapes).are_too_many) {
+        made->stats.warnings.emplace_back(
+            "decorations and shapes would come to more than " +
+            std::to_string(continuous::kShapeTrianglesMax) +
+            " triangles, so that there are no decorations"
         );
     }
     if (made->stats.changed == 0) {

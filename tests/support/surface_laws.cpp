@@ -299,7 +299,20 @@ void check_scene(
     // Shapes, which stand in for boxes, are smooth, and closed; how large they are is not known
     // here.
     std::set<std::uint32_t> of_shapes;
+    // Decorations are closed, too, and are there besides the polygons; other tests know where.
+    std::set<std::uint32_t> of_decorations;
+    std::set<std::uint32_t> of_meshes;  // which are smooth, too
     for (const continuous::ObjectType& object : example.objects) {
+        for (const continuous::Decoration& decoration : object.decorations) {
+            const auto look =
+                std::visit([](const auto& one) { return std::size_t{one.look}; }, decoration);
+            const std::uint32_t material =
+                look == continuous::kEmpty ? object.material : example.objects[look - 1].material;
+            of_decorations.insert(material);
+            if (std::holds_alternative<continuous::CornerDecoration>(decoration)) {
+                of_meshes.insert(material);
+            }
+        }
         if (object.shape != nullptr) {
             of_shapes.insert(object.material);
         }
@@ -314,7 +327,9 @@ void check_scene(
     for (const Mesh& mesh : scene.kit->meshes) {
         for (const Primitive& part : mesh.primitives) {
             const std::string what = "material " + std::to_string(part.material);
-            const double least_cosine = of_shapes.contains(part.material) ? 0.5 : 1 - 1e-4;
+            const bool is_smooth =
+                of_shapes.contains(part.material) || of_meshes.contains(part.material);
+            const double least_cosine = is_smooth ? 0.5 : 1 - 1e-4;
             const Totals totals = check_primitive(part, what, least_cosine, faults);
             found[part.material].area += totals.area;
             found[part.material].volume += totals.volume;
@@ -324,6 +339,12 @@ void check_scene(
         if (of_shapes.contains(material)) {
             if (found[material].volume <= 0 || found[material].volume > totals.volume) {
                 faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
+            }
+            continue;
+        }
+        if (of_decorations.contains(material)) {
+            if (found[material].area < totals.area * (1 - 1e-4)) {
+                faults.add("polygons of material " + std::to_string(material) + " are missing");
             }
             continue;
         }
