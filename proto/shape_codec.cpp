@@ -42,9 +42,7 @@ void check_closed(const Value& value, const Shape& shape) {
     }
 }
 
-}  // namespace
-
-std::shared_ptr<const Shape> read_shape(const Value& given) {
+std::shared_ptr<const Shape> read(const Value& given, bool has_axes) {
     auto shape = std::make_shared<Shape>();
     Faults faults;
     const Value value(given.json(), given.pointer(), faults);
@@ -66,7 +64,7 @@ std::shared_ptr<const Shape> read_shape(const Value& given) {
     if (const auto smooth = reader.optional("smooth")) {
         shape->smooth_degrees = smooth->number(0, 180).value_or(0);
     }
-    if (const auto even = reader.optional("even")) {
+    if (const auto even = has_axes ? reader.optional("even") : std::nullopt) {
         for (const Value& axis : even->array(2, 3).value_or(NoValues())) {
             if (const auto number = axis.one_of(kAxes)) {
                 shape->is_even.at(*number) = true;
@@ -80,6 +78,12 @@ std::shared_ptr<const Shape> read_shape(const Value& given) {
     given.faults().add_all("", faults.take());
     return shape;
 }
+
+}  // namespace
+
+std::shared_ptr<const Shape> read_shape(const Value& given) { return read(given, true); }
+
+std::shared_ptr<const Shape> read_mesh(const Value& given) { return read(given, false); }
 
 OrderedJson write_shape(const Shape& shape) {
     OrderedJson vertices = OrderedJson::array();

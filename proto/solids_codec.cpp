@@ -1,6 +1,7 @@
 // Examples of the continuous solver.
 
 #include "proto/continuous_codec.h"
+#include "proto/decoration_codec.h"
 #include "proto/example_codec.h"
 #include "proto/image_codec.h"
 #include "proto/shape_codec.h"
@@ -63,6 +64,9 @@ class SolidsReader {
         read_list("objects", continuous::kObjectTypesMax, [this](const Value& object) {
             read_object(object);
         });
+        for (const auto& [object, decorations] : decorations_) {
+            example_.objects[object].decorations = read_decorations(decorations, example_);
+        }
         read_list("polyhedra", kPolyhedraMax, [this](const Value& solid) { read_solid(solid); });
         if (const auto ground = reader_.optional("ground")) {
             example_.ground = object_named(*ground);
@@ -156,6 +160,9 @@ class SolidsReader {
         }
         if (const auto shape = reader.optional("shape")) {
             object.shape = read_shape(*shape);
+        }
+        if (const auto decorations = reader.optional("decorations")) {
+            decorations_.emplace_back(example_.objects.size(), *decorations);
         }
         reader.finish();
         material.name = object.name;
@@ -274,6 +281,8 @@ class SolidsReader {
     ObjectReader reader_;
     continuous::Example example_;
     std::vector<SharedImage> images_;  // null: there is a fault
+    // By object; they are read after all objects, which they may name.
+    std::vector<std::pair<std::size_t, Value>> decorations_;
     bool is_size_given_ = false;
     bool is_spacing_given_ = false;
 };
@@ -331,6 +340,9 @@ OrderedJson write_solids(const continuous::Example& given) {
         }
         if (const auto& shape = example.objects[i].shape) {
             objects[i]["shape"] = write_shape(*shape);
+        }
+        if (!example.objects[i].decorations.empty()) {
+            objects[i]["decorations"] = write_decorations(example.objects[i].decorations, example);
         }
     }
     OrderedJson polyhedra = OrderedJson::array();
