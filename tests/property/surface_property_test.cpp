@@ -69,13 +69,24 @@ void expect_right(const SurfaceChecker& checker, const Reading& reading, const M
     EXPECT_EQ(text(checker.find_faults(make_scene(*reading, model.surface), model.surface)), "");
 }
 
+// The same example, whose models are no more than their polygons and shapes.
+Reading without_decorations(const Reading& reading) {
+    Example example = reading->example();
+    for (ObjectType& object : example.objects) {
+        object.decorations.clear();
+    }
+    return ExampleReading::make(std::move(example)).value();
+}
+
 class SolidsBuiltIn : public ::testing::TestWithParam<std::size_t> {
   protected:
     [[nodiscard]] static Reading reading() { return examples::built_in_solids()[GetParam()]; }
 };
 
 TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
-    const SurfaceChecker checker(reading()->example());
+    const Reading plain = without_decorations(reading());
+    const SurfaceChecker checker(plain->example());
+    const SurfaceChecker checker_of_decorations(reading()->example());
     std::size_t polygons = 0;
     for (std::uint64_t seed = 1; seed <= solid_case_count(20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -83,7 +94,9 @@ TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
             return 8 + static_cast<double>(seed * step % 13) / 2;
         };
         const Model model = make_model(reading(), {extent(5), extent(3), extent(7)}, seed);
-        expect_right(checker, reading(), model);
+        expect_right(checker, plain, model);
+        const Scene decorated = make_scene(*reading(), model.surface);
+        EXPECT_EQ(text(checker_of_decorations.find_faults(decorated, model.surface)), "");
         polygons += model.surface.polygons.size();
     }
     EXPECT_GT(polygons, solid_case_count(20) * 10U);

@@ -86,6 +86,21 @@ def test_an_example_is_shown_and_sent_again_as_it_came(server):
     assert make(server, same)["result"]["sha256"] == job["result"]["sha256"]
 
 
+@pytest.mark.parametrize("name", ["buildings", "domes", "houses", "skyscrapers"])
+def test_those_of_built_in_examples_can_be_sent(server, name):
+    told = server.get(f"/v1/examples/{name}").json()
+    assert any("decorations" in one for one in told["objects"])
+    same = {key: value for key, value in told.items() if key in (
+        "kind", "name", "spacing", "size", "density", "ground", "objects", "polyhedra",
+        "dimensions", "connected")}
+
+    def triangles(example):  # sent objects have a material each, those of built-in ones share them
+        parts = triangles_by_material(model_of(server, make(server, example, size=(20, 8, 20))))
+        return sorted(one for part in parts.values() for one in part)
+
+    assert triangles(same) == triangles(name)
+
+
 def test_too_many_are_left_out_with_a_warning(server):
     # A column of 30 drums with 32 sides.
     ring = [(math.cos(i * math.pi / 16), math.sin(-i * math.pi / 16)) for i in range(32)]

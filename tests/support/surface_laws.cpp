@@ -336,15 +336,15 @@ void check_scene(
         }
     }
     for (const auto& [material, totals] : expected) {
-        if (of_shapes.contains(material)) {
-            if (found[material].volume <= 0 || found[material].volume > totals.volume) {
-                faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
+        if (of_decorations.contains(material)) {
+            if (found[material].area < totals.area * (1 - 1e-4) && !of_shapes.contains(material)) {
+                faults.add("polygons of material " + std::to_string(material) + " are missing");
             }
             continue;
         }
-        if (of_decorations.contains(material)) {
-            if (found[material].area < totals.area * (1 - 1e-4)) {
-                faults.add("polygons of material " + std::to_string(material) + " are missing");
+        if (of_shapes.contains(material)) {
+            if (found[material].volume <= 0 || found[material].volume > totals.volume) {
+                faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
             }
             continue;
         }
