@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace modelsynth::continuous {
 
@@ -69,14 +70,34 @@ void Contacts::find_planes() {
     }
     std::sort(by_plane.begin(), by_plane.end());
     plane_of_.resize(surface_.polygons.size());
+    std::vector<std::size_t> in_plane;
     for (std::size_t i = 0; i < by_plane.size(); ++i) {
         const auto& [direction, offset, p] = by_plane[i];
-        if (i == 0 || std::get<0>(by_plane[i - 1]) != direction ||
-            offset - std::get<1>(by_plane[i - 1]) > tolerance_) {
-            planes_.emplace_back();
+        if (i > 0 && (std::get<0>(by_plane[i - 1]) != direction ||
+                      offset - std::get<1>(by_plane[i - 1]) > tolerance_)) {
+            index_plane(in_plane);
+            in_plane.clear();
         }
-        planes_.back().polygons.at(is_along_[p]).push_back(p);
-        plane_of_[p] = planes_.size() - 1;
+        in_plane.push_back(p);
+        plane_of_[p] = planes_.size();
+    }
+    index_plane(in_plane);
+}
+
+void Contacts::index_plane(const std::vector<std::size_t>& polygons) {
+    Plane& plane = planes_.emplace_back();
+    Eigen::AlignedBox3d box;
+    for (const std::size_t p : polygons) {
+        box.extend(boxes_[p]);
+    }
+    box.sizes().maxCoeff(&plane.axis);
+    std::array<std::vector<IntervalTree::Interval>, 2> intervals;
+    for (const std::size_t p : polygons) {
+        intervals.at(is_along_[p])
+            .push_back({boxes_[p].min()[plane.axis], boxes_[p].max()[plane.axis], p});
+    }
+    for (std::size_t way = 0; way < 2; ++way) {
+        plane.polygons.at(way) = IntervalTree(std::move(intervals.at(way)));
     }
 }
 
@@ -87,11 +108,12 @@ std::vector<SidePart> Contacts::free_parts(const Side& side) const {
     const ObjectId object = surface_.polygons[side.polygon].object;
     std::vector<SidePart> covered;
     const Plane& plane = planes_[plane_of_[side.polygon]];
-    for (const std::size_t p : plane.polygons.at(1U - is_along_[side.polygon])) {
+    const auto& across = plane.polygons.at(1U - is_along_[side.polygon]);
+    across.for_each(box.min()[plane.axis], box.max()[plane.axis], [&](std::size_t p) {
         if (surface_.polygons[p].object != object && boxes_[p].intersects(box)) {
             cover(side, surface_.polygons[p], covered);
         }
-    }
+    });
     std::sort(covered.begin(), covered.end(), [](const SidePart& a, const SidePart& b) {
         return std::tuple(a.begin, a.end) < std::tuple(b.begin, b.end);
     });

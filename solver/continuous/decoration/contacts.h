@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/continuous/decoration/interval_tree.h"
 #include "solver/continuous/sides.h"
 #include "solver/continuous/surface.h"
 
@@ -28,18 +29,21 @@ class Contacts {
 
     // The parts of a side along which its polygon, seen from it inwards, borders empty space:
     // ascending, apart from each other, whole up to its ends where they come near to these.
-    // Cost: O(corners of the polygons in the plane).
+    // Cost: O(log n) for n polygons in the plane, and the corners of those beside the side.
     [[nodiscard]] std::vector<SidePart> free_parts(const Side& side) const;
 
     // Below this (metres) places are one.
     [[nodiscard]] double tolerance() const { return tolerance_; }
 
   private:
+    // Its polygons against its first normal and along it, by where they lie along its longest axis.
     struct Plane {
-        std::array<std::vector<std::size_t>, 2> polygons;  // against the first normal, and along it
+        Eigen::Index axis = 0;
+        std::array<IntervalTree, 2> polygons;
     };
 
     void find_planes();
+    void index_plane(const std::vector<std::size_t>& polygons);
     // Adds from where to where a polygon lies on a side.
     void cover(const Side& side, const SurfacePolygon& polygon, std::vector<SidePart>& covered)
         const;

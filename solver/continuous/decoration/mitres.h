@@ -26,6 +26,8 @@ class MitredSweeps {
 
     void add(const DecoratedEdge& edge);
 
+    [[nodiscard]] std::size_t size() const { return swept_.size(); }
+
     // Joins what can be, once all edges are there.
     void append_to(std::vector<Sweep>& sweeps);
 

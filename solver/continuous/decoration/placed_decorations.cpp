@@ -58,12 +58,20 @@ class ObjectDecorator {
             if (const auto sides = chosen_edge(s, decoration)) {
                 add_edge(*sides, mitred);
             }
+            if (mitred.size() * 2 * decoration.profile.size() > kShapeTrianglesMax) {
+                break;  // too many already; they need not fill the memory
+            }
         }
         mitred.append_to(sweeps);
     }
 
     void add(const CornerDecoration& decoration, std::vector<PlacedMesh>& meshes) {
+        const std::size_t count_max = kShapeTrianglesMax / triangle_count(*decoration.mesh);
+        const std::size_t before = meshes.size();
         for (const std::vector<std::size_t>& corner : corners_) {
+            if (meshes.size() - before > count_max) {
+                break;  // too many already
+            }
             std::vector<Point> normals;
             Point outwards = Point::Zero();
             bool is_convex_here = true;
@@ -224,6 +232,20 @@ std::vector<Point> exact_normals(std::span<const Point> of_families, const Surfa
     return normals;
 }
 
+// Of the sweeps and meshes from these numbers on.
+std::size_t triangles_from(
+    const PlacedDecorations& placed, std::size_t first_sweep, std::size_t first_mesh
+) {
+    std::size_t count = 0;
+    for (std::size_t i = first_sweep; i < placed.sweeps.size(); ++i) {
+        count += triangle_count(placed.sweeps[i]);
+    }
+    for (std::size_t i = first_mesh; i < placed.meshes.size(); ++i) {
+        count += triangle_count(*placed.meshes[i].decoration->mesh);
+    }
+    return count;
+}
+
 }  // namespace
 
 PlacedDecorations place_decorations(
@@ -239,6 +261,7 @@ PlacedDecorations place_decorations(
     }
     const std::vector<Point> of_polygons = exact_normals(normals, surface);
     const Contacts contacts(surface, of_polygons);
+    std::size_t triangles = shapes.triangle_count;
     for (std::size_t i = 0; i < example.objects.size(); ++i) {
         if (is_plain(example.objects[i])) {
             continue;
@@ -246,22 +269,18 @@ PlacedDecorations place_decorations(
         const auto object = static_cast<ObjectId>(i + 1);
         ObjectDecorator decorator(surface, shapes, contacts, of_polygons, object);
         for (const Decoration& decoration : example.objects[i].decorations) {
+            const std::size_t sweeps = placed.sweeps.size();
+            const std::size_t meshes = placed.meshes.size();
             if (const auto* edges = std::get_if<EdgeDecoration>(&decoration)) {
                 decorator.add(*edges, placed.sweeps);
             } else {
                 decorator.add(std::get<CornerDecoration>(decoration), placed.meshes);
             }
+            triangles += triangles_from(placed, sweeps, meshes);
+            if (triangles > kShapeTrianglesMax) {
+                return {{}, {}, true};
+            }
         }
-    }
-    std::size_t triangles = shapes.triangle_count;
-    for (const Sweep& sweep : placed.sweeps) {
-        triangles += triangle_count(sweep);
-    }
-    for (const PlacedMesh& mesh : placed.meshes) {
-        triangles += triangle_count(*mesh.decoration->mesh);
-    }
-    if (triangles > kShapeTrianglesMax) {
-        return {{}, {}, true};
     }
     return placed;
 }

@@ -51,7 +51,7 @@ struct PlacedDecorations {
 // other end; and edges at which the profile itself would come so far out have none.
 // `normals`: of the families of the surface.
 // Deterministic. Cost: O(n log n) for n sides, and for each side of decorated objects the corners
-// in its plane.
+// of the polygons beside it.
 inline constexpr double kReachMax = 8;
 [[nodiscard]] PlacedDecorations place_decorations(
     const Example& example,
