@@ -5,6 +5,7 @@
 #include "proto/example_codec.h"
 #include "proto/image_codec.h"
 #include "proto/shape_codec.h"
+#include "proto/solid_constraint_codec.h"
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/mesh_import.h"
@@ -246,12 +247,29 @@ class SolidsReader {
                 read_dimension(value);
             }
         }
+        if (const auto constraints = reader_.optional("constraints")) {
+            read_constraints(*constraints);
+        }
         if (const auto connected = reader_.optional("connected")) {
             for (const Value& value : connected->array(0, 256).value_or(NoValues())) {
                 std::vector<ObjectId>& together = example_.connected.emplace_back();
                 for (const Value& object :
                      value.array(1, continuous::kObjectTypesMax).value_or(NoValues())) {
                     together.push_back(object_named(object));
+                }
+            }
+        }
+    }
+
+    void read_constraints(const Value& value) {
+        example_.constraints = read_solid_constraints(value, limits_);
+        for (const continuous::Constraint& constraint : example_.constraints) {
+            for (const std::string& name : constraint.objects) {
+                const bool is_known = continuous::find_object(example_, name) != continuous::kEmpty ||
+                                      (continuous::may_name_empty(constraint.rule) &&
+                                       name == continuous::kEmptyName);
+                if (!is_known) {
+                    value.fault("the example has no object \"" + name + "\"");
                 }
             }
         }
@@ -381,6 +399,7 @@ OrderedJson write_solids(const continuous::Example& given) {
         {"polyhedra", std::move(polyhedra)},
         {"dimensions", std::move(dimensions)},
         {"connected", std::move(connected)},
+        {"constraints", write_constraints(example.constraints)},
         {"spacing", example.spacing},
         {"size", example.size},
         {"density", example.density}};

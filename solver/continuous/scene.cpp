@@ -2,7 +2,7 @@
 
 #include "solver/continuous/decoration/decoration_meshes.h"
 #include "solver/continuous/decoration/placed_decorations.h"
-#include "solver/continuous/families.h"
+#include "solver/continuous/reading/families.h"
 #include "solver/continuous/shapes/placed_shapes.h"
 #include "solver/continuous/triangulation/triangulation.h"
 
@@ -253,11 +253,7 @@ Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* 
         if (polygon.family != kNoFamily) {
             normal = (polygon.is_along_normal ? 1 : -1) * reading.topes().normals()[polygon.family];
         } else {
-            const std::vector<std::uint32_t>& loop = polygon.loops.front();
-            const Point& origin = surface.points[loop[0]];
-            normal = (surface.points[loop[1]] - origin)
-                         .cross(surface.points[loop[2]] - origin)
-                         .normalized();
+            normal = area_vector(surface.points, polygon.loops.front()).normalized();
         }
         builder.add(
             example.objects[polygon.object - 1U].material,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/continuous/reading.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/reading/reading.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/mesh/scene.h"
 
 namespace modelsynth::continuous {

@@ -2,7 +2,7 @@
 
 #include "solver/continuous/decoration/contacts.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/case_count.h"

@@ -3,7 +3,7 @@
 #include "solver/continuous/decoration/decoration_meshes.h"
 #include "solver/continuous/decoration/placed_decorations.h"
 #include "solver/continuous/scene.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"

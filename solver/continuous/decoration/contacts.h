@@ -1,8 +1,8 @@
 #pragma once
 
 #include "solver/continuous/decoration/interval_tree.h"
-#include "solver/continuous/sides.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/sides.h"
+#include "solver/continuous/surface/surface.h"
 
 #include <Eigen/Geometry>
 

@@ -5,7 +5,7 @@
 
 #include "solver/continuous/decoration/mitres.h"
 
-#include "solver/continuous/sides.h"
+#include "solver/continuous/surface/sides.h"
 
 #include <Eigen/Geometry>
 

@@ -4,8 +4,8 @@
 #include "solver/continuous/decoration/decoration_meshes.h"
 #include "solver/continuous/decoration/face_choice.h"
 #include "solver/continuous/decoration/mitres.h"
-#include "solver/continuous/families.h"
-#include "solver/continuous/sides.h"
+#include "solver/continuous/reading/families.h"
+#include "solver/continuous/surface/sides.h"
 
 #include <Eigen/Geometry>
 

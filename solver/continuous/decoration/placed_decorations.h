@@ -2,7 +2,7 @@
 
 #include "solver/continuous/example.h"
 #include "solver/continuous/shapes/placed_shapes.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 
 #include <array>
 #include <cstddef>

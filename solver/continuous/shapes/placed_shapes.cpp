@@ -1,7 +1,7 @@
 #include "solver/continuous/shapes/placed_shapes.h"
 
 #include "solver/continuous/shapes/cut_boxes.h"
-#include "solver/continuous/sides.h"
+#include "solver/continuous/surface/sides.h"
 
 #include <Eigen/Geometry>
 
@@ -100,6 +100,9 @@ std::optional<Box3> box_of(
     Box3 box;
     double volume = 0;
     for (const std::size_t p : piece) {
+        if (surface.polygons[p].family == kNoFamily) {
+            return std::nullopt;  // the model's border cut it
+        }
         for (const Loop& loop : surface.polygons[p].loops) {
             for (const std::uint32_t point : loop) {
                 box.extend(surface.points[point]);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/continuous/example.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 
 #include <cstddef>
 #include <cstdint>

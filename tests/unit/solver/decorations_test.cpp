@@ -2,8 +2,8 @@
 
 #include "solver/continuous/decoration/decoration_meshes.h"
 #include "solver/continuous/decoration/placed_decorations.h"
-#include "solver/continuous/families.h"
 #include "solver/continuous/problem.h"
+#include "solver/continuous/reading/families.h"
 #include "solver/continuous/scene.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
