@@ -265,9 +265,9 @@ class SolidsReader {
         example_.constraints = read_solid_constraints(value, limits_);
         for (const continuous::Constraint& constraint : example_.constraints) {
             for (const std::string& name : constraint.objects) {
-                const bool is_known = continuous::find_object(example_, name) != continuous::kEmpty ||
-                                      (continuous::may_name_empty(constraint.rule) &&
-                                       name == continuous::kEmptyName);
+                const bool is_known =
+                    continuous::find_object(example_, name) != continuous::kEmpty ||
+                    (continuous::may_name_empty(constraint.rule) && name == continuous::kEmptyName);
                 if (!is_known) {
                     value.fault("the example has no object \"" + name + "\"");
                 }

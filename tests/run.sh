@@ -34,19 +34,30 @@ build() {  # PRESET TARGET...
     || { tail -n 60 "$results/$preset.build.log"; return 1; }
 }
 
+run_program() {  # PRESET PROGRAM
+  local preset=$1 program=$2 code
+  "build/$preset/bin/$program" --gtest_brief=1 \
+    --gtest_output="xml:$results/$preset.$program.xml" >"$results/$preset.$program.log" 2>&1
+  code=$?
+  step "$preset $program"
+  cat "$results/$preset.$program.log"
+  # 1 is that of failed tests, which the file counts; a sanitizer's report may stand beside tests
+  # that passed.
+  [ $code -le 1 ] && [ -s "$results/$preset.$program.xml" ] \
+    || broken "$preset $program: exit code $code"
+}
+
+# Two at a time.
 unit() {  # PRESET PROGRAM...
-  local preset=$1 program code
+  local preset=$1 program
   shift
   for program in "$@"; do
-    step "$preset $program"
-    "build/$preset/bin/$program" --gtest_brief=1 \
-      --gtest_output="xml:$results/$preset.$program.xml"
-    code=$?
-    # 1 is that of failed tests, which the file counts; a sanitizer's report may stand beside tests
-    # that passed.
-    [ $code -le 1 ] && [ -s "$results/$preset.$program.xml" ] \
-      || broken "$preset $program: exit code $code"
+    while [ "$(jobs -rp | wc -l)" -ge 2 ]; do
+      wait -n
+    done
+    run_program "$preset" "$program" &
   done
+  wait
 }
 
 service() {  # PRESET PYTEST-ARGUMENTS...
