@@ -52,8 +52,8 @@ std::shared_ptr<const Shape> read(const Value& given, bool has_axes) {
     Faults faults;
     const Value value(given.json(), given.pointer(), faults);
     ObjectReader reader(value);
-    // Without a mesh of its own it is the box.
-    const bool is_box = has_axes && value.json().is_object() &&
+    // What is even alone is the box.
+    const bool is_box = has_axes && value.json().is_object() && value.json().contains("even") &&
                         !value.json().contains("vertices") && !value.json().contains("faces");
     if (is_box) {
         shape->corners = kCube;

@@ -85,8 +85,8 @@ class FaultFinder {
         if (check_families()) {
             check_size();
         }
-        is_size_good_ = faults_.empty();
         check_disorder();
+        is_size_good_ = faults_.empty();
         for (const auto& [name, weight] : parameters_.weights) {
             check_object("/weights/" + pointer_part(name), name);
         }

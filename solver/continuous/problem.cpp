@@ -34,19 +34,25 @@ std::vector<Label> find_homeless(const Figures& figures, const Arrangement& arra
     return homeless;
 }
 
-// The ground, and what has a dimension.
-std::vector<bool> firm_objects(const ExampleReading& reading, const Parameters& parameters) {
-    std::vector<bool> is_firm(reading.example().objects.size() + 1);
-    is_firm[reading.example().ground.value_or(kEmpty)] = true;
+// By object, the families across which it has a dimension.
+std::vector<FamilySet> stiff_families(const ExampleReading& reading, const Parameters& parameters) {
+    const Example& example = reading.example();
+    std::vector<FamilySet> stiff(example.objects.size() + 1);
     for (const Constraint& constraint : *parameters.constraints) {
-        if (std::holds_alternative<DimensionRule>(constraint.rule)) {
-            const ObjectSet named = objects_named(reading.example(), constraint.objects);
-            for (std::size_t object = 1; object < is_firm.size(); ++object) {
-                is_firm[object] = is_firm[object] || named[object];
+        const auto* rule = std::get_if<DimensionRule>(&constraint.rule);
+        if (rule == nullptr) {
+            continue;
+        }
+        const ObjectSet named = objects_named(example, constraint.objects);
+        const auto& [x, y, z] = rule->normal;
+        for (std::size_t object = 1; object < stiff.size(); ++object) {
+            if (named[object]) {
+                const Eigen::Matrix3d& turn = example.objects[object - 1].turn;
+                stiff[object] |= FamilySet{1} << *reading.find_family(turn * Point(x, y, z));
             }
         }
     }
-    return is_firm;
+    return stiff;
 }
 
 std::vector<Connection> connections_of(
@@ -177,7 +183,7 @@ Result<Problem> make_problem(
     const double perturbation =
         parameters.perturbation > 0 ? parameters.perturbation * arrangement->least_distance() : 0;
     const Bounds box = model_box(*reading, parameters);
-    std::vector<bool> firm = firm_objects(*reading, parameters);
+    std::vector<FamilySet> stiff = stiff_families(*reading, parameters);
     return Problem{
         std::move(reading),
         std::move(planes.spacings),
@@ -191,7 +197,7 @@ Result<Problem> make_problem(
         std::move(connections),
         std::move(symmetries),
         perturbation,
-        std::move(firm)};
+        std::move(stiff)};
 }
 
 }  // namespace modelsynth::continuous

@@ -36,7 +36,7 @@ struct Problem {
     std::vector<Connection> connections;
     std::unique_ptr<const Symmetries> symmetries;  // null: none
     double perturbation = 0;                       // metres by which faces may be moved
-    std::vector<bool> is_firm;                     // by object: its faces may not
+    std::vector<FamilySet> stiff;  // by object: the families across which it has a dimension
 
     // Along edges, and to images.
     [[nodiscard]] const Relations& relations() const {

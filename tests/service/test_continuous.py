@@ -139,8 +139,9 @@ def test_equal_requests_give_equal_bytes_and_seeds_different_ones(server):
 def test_the_echo_makes_the_same_model_again(server):
     job = make(server)
     echo = job["request"]
-    assert set(echo["parameters"]) == {"size", "spacing", "offsets", "blocks", "density", "weights",
-                                       "constraints"}
+    assert set(echo["parameters"]) == {
+        "size", "spacing", "offsets", "blocks", "boundary", "jitter", "perturbation", "nudge",
+        "variants", "density", "weights", "constraints"}
     answer = server.request("POST", "/v1/jobs", echo, headers={"Prefer": "wait=60"})
     assert answer.json()["result"]["sha256"] == job["result"]["sha256"]
 

@@ -69,18 +69,20 @@ def test_the_guides_requests_keep_all_but_what_they_name(server, village, reques
     at = request["from"].get("at", (0, 0, 0))
     box = request["from"].get("box", {"min": [0, 0, 0], "max": at})
     older, newer = corners(server, village, at=at), corners(server, job)
+    wide = 0.5
 
     def is_kept(corner):
-        """Inside of the older model, where new things may not touch it, and beyond the box."""
+        """Inside of the older model, where new things may not touch it, and beyond the box, further
+        than a moulding is wide."""
         x, _, z = (p - a for p, a in zip(corner, at))
         width, _, depth = _FIRST["parameters"]["size"]
-        return 0 < x < width and 0 < z < depth and \
-            any(p > most for p, most in zip(corner, box["max"]))
+        return wide < x < width - wide and wide < z < depth - wide and \
+            any(p > most + wide for p, most in zip(corner, box["max"]))
     kept = set(filter(is_kept, older))
     assert kept and kept == set(filter(is_kept, newer))
     assert newer != older
     for rule in request.get("parameters", {}).get("constraints", []):
-        assert not any(all(low < p < high for p, low, high in
+        assert not any(all(low + wide < p < high - wide for p, low, high in
                            zip(corner, rule["box"]["min"], rule["box"]["max"]))
                        for corner in newer)
 

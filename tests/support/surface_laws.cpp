@@ -348,7 +348,8 @@ void check_scene(
             continue;
         }
         if (of_shapes.contains(material)) {
-            if (found[material].volume <= 0 || found[material].volume > totals.volume * (1 + 1e-4)) {
+            if (found[material].volume <= 0 ||
+                found[material].volume > totals.volume * (1 + 1e-4)) {
                 faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
             }
             continue;

@@ -187,7 +187,7 @@ Bounds model_box(const ExampleReading& reading, const Parameters& parameters) {
         const auto side = static_cast<std::size_t>(2 * axis);
         const auto shortened = [&](std::size_t at) {
             return parameters.boundary[at] == SideKind::kFree ? kShortened[at] * *parameters.spacing
-                                                          : 0;
+                                                              : 0;
         };
         box.min[axis] += shortened(side);
         box.max[axis] -= shortened(side + 1);

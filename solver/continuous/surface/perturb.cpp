@@ -51,8 +51,8 @@ class DisjointSets {
     std::vector<std::size_t> parent_;
 };
 
-// Polygons that touch in one plane are one face, and faces that cannot be moved one by one are one
-// body.
+// Polygons that touch in one plane are one face. Free faces that cannot be moved one by one are one
+// body; it goes along the firm faces that it meets.
 class Perturbation {
   public:
     Perturbation(
@@ -60,7 +60,7 @@ class Perturbation {
         const Topes& topes,
         const Bounds& box,
         double most,
-        const std::vector<bool>& is_firm
+        const StiffObjects& stiff
     )
         : surface_(surface),
           box_(box),
@@ -68,18 +68,21 @@ class Perturbation {
           before_(surface.points),
           faces_(surface.polygons.size()),
           bodies_(surface.polygons.size()),
+          is_firm_(surface.polygons.size()),
           stays_(surface.polygons.size()),
-          faces_of_body_(surface.polygons.size()) {
+          is_rigid_(surface.polygons.size()),
+          along_(surface.polygons.size()) {
         const PlaneIndex index(surface, topes);
         index.for_each_touching([this](std::size_t a, std::size_t b) { faces_.join(a, b); });
         find_normals(topes);
-        find_faces_at_points(index);
         for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
-            if (surface.polygons[p].family == kNoFamily || is_firm[surface.polygons[p].object]) {
-                stays_[body_of(p)] = true;
+            const SurfacePolygon& polygon = surface.polygons[p];
+            if (polygon.family == kNoFamily || polygon.object == stiff.ground) {
+                is_firm_[faces_.find(p)] = true;
             }
-            faces_of_body_[body_of(p)] += std::size_t{faces_.find(p) == p};
         }
+        find_faces_at_points(index);
+        make_bodies(stiff);
     }
 
     void move() {
@@ -130,22 +133,106 @@ class Perturbation {
             }
             std::sort(faces.begin(), faces.end());
             faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        }
+    }
+
+    void make_bodies(const StiffObjects& stiff) {
+        std::vector<std::vector<std::size_t>> together = opposite_faces(stiff);
+        for (const std::vector<std::size_t>& faces : faces_at_) {
             if (faces.size() > 3) {
-                for (const std::size_t face : faces) {
-                    bodies_.join(face, faces.front());
+                together.push_back(faces);
+            }
+        }
+        for (const std::vector<std::size_t>& faces : together) {
+            const std::size_t first = free_face(faces);
+            for (const std::size_t face : faces) {
+                if (!is_firm_[face]) {
+                    bodies_.join(face, first);
+                }
+            }
+        }
+        for (const std::vector<std::size_t>& faces : together) {
+            const std::size_t first = free_face(faces);
+            if (first == kNone) {
+                continue;
+            }
+            const std::size_t body = bodies_.find(first);
+            is_rigid_[body] = true;
+            for (const std::size_t face : faces) {
+                if (is_firm_[face]) {
+                    go_along(body, normals_[face]);
                 }
             }
         }
     }
 
+    // Faces that keep their distance: of each piece of an object those of a family across which it
+    // is stiff.
+    [[nodiscard]] std::vector<std::vector<std::size_t>> opposite_faces(const StiffObjects& stiff) {
+        DisjointSets pieces(surface_.polygons.size());
+        std::map<std::pair<ObjectId, std::uint32_t>, std::size_t> polygon_at;
+        for (std::size_t p = 0; p < surface_.polygons.size(); ++p) {
+            for (const auto& loop : surface_.polygons[p].loops) {
+                for (const std::uint32_t point : loop) {
+                    const auto [at, is_new] =
+                        polygon_at.try_emplace({surface_.polygons[p].object, point}, p);
+                    pieces.join(p, at->second);
+                }
+            }
+        }
+        std::map<std::pair<std::size_t, std::uint8_t>, std::vector<std::size_t>> opposite;
+        for (std::size_t p = 0; p < surface_.polygons.size(); ++p) {
+            const SurfacePolygon& polygon = surface_.polygons[p];
+            if (polygon.family != kNoFamily &&
+                (stiff.across[polygon.object] >> polygon.family & 1) != 0) {
+                opposite[{pieces.find(p), polygon.family}].push_back(faces_.find(p));
+            }
+        }
+        std::vector<std::vector<std::size_t>> faces;
+        for (auto& [piece, of_piece] : opposite) {
+            faces.push_back(std::move(of_piece));
+        }
+        return faces;
+    }
+
+    // kNone: there is none.
+    [[nodiscard]] std::size_t free_face(const std::vector<std::size_t>& faces) const {
+        const auto free = std::find_if(faces.begin(), faces.end(), [this](std::size_t face) {
+            return !is_firm_[face];
+        });
+        return free == faces.end() ? kNone : *free;
+    }
+
+    // The body does not move across faces of the normal.
+    void go_along(std::size_t body, Point normal) {
+        for (const Point& other : along_[body]) {
+            normal -= normal.dot(other) * other;
+        }
+        if (normal.norm() > 1e-6) {
+            along_[body].push_back(normal.normalized());
+        }
+    }
+
+    // Of a body that is moved as a whole.
+    [[nodiscard]] Point shift_of_body(std::size_t body) const {
+        if (stays_[body]) {
+            return Point::Zero();
+        }
+        Point shift = most_ * random_of(body);
+        for (const Point& normal : along_[body]) {
+            shift -= shift.dot(normal) * normal;
+        }
+        return shift;
+    }
+
     // By how much a face moves along its normal.
     [[nodiscard]] double offset_of(std::size_t face) {
         const std::size_t body = bodies_.find(face);
-        if (stays_[body]) {
+        if (is_firm_[face] || stays_[body]) {
             return 0;
         }
-        const Point shift = most_ * random_of(body);
-        return faces_of_body_[body] == 1 ? shift.x() : normals_[face].dot(shift);
+        return is_rigid_[body] ? normals_[face].dot(shift_of_body(body))
+                               : most_ * random_of(body).x();
     }
 
     // A random point in a ball, or its first number between -1 and 1, that depends on where the
@@ -176,9 +263,9 @@ class Perturbation {
         if (faces.size() < 3) {
             return Point::Zero();
         }
-        if (faces.size() > 3) {  // one body
-            const std::size_t body = bodies_.find(faces.front());
-            return stays_[body] ? Point(Point::Zero()) : Point(most_ * random_of(body));
+        if (faces.size() > 3) {  // one body, beside firm faces
+            const std::size_t free = free_face(faces);
+            return free == kNone ? Point(Point::Zero()) : shift_of_body(bodies_.find(free));
         }
         Eigen::Matrix3d normals;
         Point offsets;
@@ -195,7 +282,7 @@ class Perturbation {
         bool any = false;
         const auto hold_at = [&](std::uint32_t point) {
             for (const std::size_t face : faces_at_[point]) {
-                any = hold(bodies_.find(face)) || any;
+                any = (!is_firm_[face] && hold(bodies_.find(face))) || any;
             }
         };
         for (const SurfacePolygon& polygon : surface_.polygons) {
@@ -334,6 +421,8 @@ class Perturbation {
                (point.array() <= box_.max.array() + tolerance).all();
     }
 
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
     Surface& surface_;
     const Bounds& box_;
     double most_;
@@ -341,21 +430,19 @@ class Perturbation {
     DisjointSets faces_;                              // of polygons
     DisjointSets bodies_;                             // of faces, by their names
     std::vector<Point> normals_;                      // by polygon
+    std::vector<bool> is_firm_;                       // by face
     std::vector<bool> stays_;                         // by body
-    std::vector<std::size_t> faces_of_body_;          // how many; one moves along its normal
+    std::vector<bool> is_rigid_;                      // by body: else it is one face
+    std::vector<std::vector<Point>> along_;           // by body, at right angles to each other
     std::vector<std::vector<std::size_t>> faces_at_;  // by point, each once, rising
 };
 
 }  // namespace
 
 void perturb(
-    Surface& surface,
-    const Topes& topes,
-    const Bounds& box,
-    double most,
-    const std::vector<bool>& is_firm
+    Surface& surface, const Topes& topes, const Bounds& box, double most, const StiffObjects& stiff
 ) {
-    Perturbation(surface, topes, box, most, is_firm).move();
+    Perturbation(surface, topes, box, most, stiff).move();
 }
 
 }  // namespace modelsynth::continuous

@@ -450,8 +450,13 @@ class SurfaceBuilder {
 Surface make_surface(const Problem& problem, std::span<const Label> labels) {
     Surface surface = SurfaceBuilder(problem, labels).build();
     if (problem.perturbation > 0) {
+        const ObjectId ground = problem.reading->example().ground.value_or(kEmpty);
         perturb(
-            surface, problem.reading->topes(), problem.box, problem.perturbation, problem.is_firm
+            surface,
+            problem.reading->topes(),
+            problem.box,
+            problem.perturbation,
+            {ground, problem.stiff}
         );
     }
     return surface;

@@ -48,8 +48,8 @@ continuous::Example make_letters() {
     example.description = "Skyscrapers in the shape of G, of P and of M: stone, ribbons, glass.";
     example.constraints = {
         only_in('G', {"stone", "cap", "pier a", "pier b"}),
-        only_in('P', {"slab", "ribbon", "plant"}),
-        only_in('M', {"glass", "crown", "plinth", "foot a", "foot b"})};
+        only_in('P', {"slab", "ribbon", "plant", "plinth", "foot a", "foot b"}),
+        only_in('M', {"glass", "crown"})};
     example.size = {152, 12, 56};
     example.density = 1;
     return example;
