@@ -2,7 +2,7 @@
 
 #include "proto/json.h"
 #include "solver/continuous/display/figure_drawing.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/discrete/analysis/success_drawing.h"
 
 #include <algorithm>

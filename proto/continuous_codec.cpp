@@ -117,6 +117,64 @@ OrderedJson write_offsets(const Parameters& parameters) {
     return list;
 }
 
+continuous::Variants read_variants(const Value& value) {
+    continuous::Variants variants;
+    ObjectReader reader(value);
+    if (const auto turns = reader.optional("turns")) {
+        const auto count = turns->integer(1, 4).value_or(1);
+        if (count == 3) {
+            turns->fault("must be 1, 2 or 4");
+        }
+        variants.turns = static_cast<std::uint8_t>(count);
+    }
+    if (const auto mirrors = reader.optional("mirrors")) {
+        constexpr std::array<const char*, 2> kAxes = {"x", "z"};
+        for (const Value& axis : mirrors->array(0, 2).value_or(std::vector<Value>())) {
+            if (const auto number = axis.one_of(kAxes)) {
+                (*number == 0 ? variants.mirror_x : variants.mirror_z) = true;
+            }
+        }
+    }
+    reader.finish();
+    return variants;
+}
+
+OrderedJson write_variants(const continuous::Variants& variants) {
+    OrderedJson mirrors = OrderedJson::array();
+    if (variants.mirror_x) {
+        mirrors.push_back("x");
+    }
+    if (variants.mirror_z) {
+        mirrors.push_back("z");
+    }
+    return {{"turns", variants.turns}, {"mirrors", std::move(mirrors)}};
+}
+
+// Side 2 * axis, + 1 where the coordinate is largest.
+constexpr std::array<const char*, 6> kSides = {"west", "east", "bottom", "top", "north", "south"};
+constexpr std::array<const char*, 2> kSideKinds = {"closed", "free"};
+
+void read_boundary(const Value& value, Parameters& parameters) {
+    ObjectReader reader(value);
+    for (std::size_t side = 0; side < kSides.size(); ++side) {
+        const auto given = reader.optional(kSides[side]);
+        if (const auto kind = given ? given->one_of(kSideKinds) : std::nullopt) {
+            parameters.boundary[side] =
+                *kind == 0 ? continuous::SideKind::kClosed : continuous::SideKind::kFree;
+        }
+    }
+    reader.finish();
+}
+
+OrderedJson write_boundary(const Parameters& parameters) {
+    OrderedJson boundary = OrderedJson::object();
+    for (std::size_t side = 0; side < kSides.size(); ++side) {
+        boundary[kSides[side]] =
+            kSideKinds[parameters.boundary[side] == continuous::SideKind::kFree ? 1 : 0];
+    }
+    return boundary;
+}
+
 }  // namespace
 
 std::optional<Point> read_point(const Value& value, double extent_max) {
@@ -183,6 +241,22 @@ Parameters read_continuous_parameters(
     if (const auto blocks = reader.optional("blocks")) {
         parameters.blocks.emplace(read_blocks(*blocks, limits));
     }
+    if (const auto boundary = reader.optional("boundary")) {
+        parameters.boundary = {};
+        read_boundary(*boundary, parameters);
+    }
+    if (const auto jitter = reader.optional("jitter")) {
+        parameters.jitter = jitter->number(0, continuous::kJitterMax).value_or(0);
+    }
+    if (const auto perturbation = reader.optional("perturbation")) {
+        parameters.perturbation = perturbation->number(0, continuous::kPerturbationMax).value_or(0);
+    }
+    if (const auto nudge = reader.optional("nudge")) {
+        parameters.nudge = nudge->number(0, continuous::kNudgeMax).value_or(0);
+    }
+    if (const auto variants = reader.optional("variants")) {
+        parameters.variants = read_variants(*variants);
+    }
     if (const auto density = reader.optional("density")) {
         parameters.density = density->number(0.001, 1);
     }
@@ -207,6 +281,11 @@ OrderedJson write_parameters(const Parameters& parameters) {
         {"spacing", write_spacing(parameters)},
         {"offsets", write_offsets(parameters)},
         {"blocks", write_blocks(*parameters.blocks)},
+        {"boundary", write_boundary(parameters)},
+        {"jitter", parameters.jitter},
+        {"perturbation", parameters.perturbation},
+        {"nudge", parameters.nudge},
+        {"variants", write_variants(parameters.variants)},
         {"density", *parameters.density},
         {"weights", std::move(weights)},
         {"constraints", write_constraints(*parameters.constraints)}};

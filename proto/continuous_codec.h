@@ -5,7 +5,7 @@
 #include "proto/json.h"
 #include "proto/limits.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 
 #include <array>
 #include <memory>

@@ -396,11 +396,28 @@ class RequestReader {
         if (!example_ || !size_is_usable_ || (inherits() && !earlier_)) {
             return;
         }
-        request_.task.example = *example_;
-        request_.task.parameters =
-            with_defaults(solids_ ? Parameters(*solids_) : Parameters(parameters_), *example_);
+        const Parameters given = solids_ ? Parameters(*solids_) : Parameters(parameters_);
+        auto example = example_for(*example_, given);
+        if (!example) {
+            faults_.add("/parameters/variants", example.error().message, true);
+            return;
+        }
+        if (earlier_ && !are_read_alike(*example, earlier_->task.example)) {
+            faults_.add(
+                "/parameters",
+                "variants, what has a dimension and so becomes other objects in them, and by how "
+                "much faces are nudged must be those of that job"
+            );
+            return;
+        }
+        request_.task.example = std::move(*example);
+        request_.task.parameters = with_defaults(given, request_.task.example);
         check_against_limits(
-            *example_, request_.task.parameters, request_.alternatives.value_or(1), limits_, faults_
+            request_.task.example,
+            request_.task.parameters,
+            request_.alternatives.value_or(1),
+            limits_,
+            faults_
         );
         // The planes of solids can be told once nothing is wrong with them.
         if (request_.from && (!solids_ || faults_.empty())) {

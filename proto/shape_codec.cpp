@@ -24,6 +24,11 @@ constexpr std::size_t kShapeFaceCornersMax = 64;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
+const std::vector<Point> kCube = {
+    {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+const std::vector<Face> kCubeFaces = {
+    {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+
 using NoValues = std::vector<Value>;
 
 // Whether it encloses something, told at the places of the request.
@@ -42,19 +47,23 @@ void check_closed(const Value& value, const Shape& shape) {
     }
 }
 
-}  // namespace
-
-std::shared_ptr<const Shape> read_shape(const Value& given) {
+std::shared_ptr<const Shape> read(const Value& given, bool has_axes) {
     auto shape = std::make_shared<Shape>();
     Faults faults;
     const Value value(given.json(), given.pointer(), faults);
     ObjectReader reader(value);
-    if (const auto vertices = reader.required("vertices")) {
+    // Without a mesh of its own it is the box.
+    const bool is_box = has_axes && value.json().is_object() &&
+                        !value.json().contains("vertices") && !value.json().contains("faces");
+    if (is_box) {
+        shape->corners = kCube;
+        shape->faces = kCubeFaces;
+    } else if (const auto vertices = reader.required("vertices")) {
         for (const Value& vertex : vertices->array(4, kShapeCornersMax).value_or(NoValues())) {
             shape->corners.push_back(read_point(vertex, kMetresMax).value_or(Point::Zero()));
         }
     }
-    if (const auto faces = reader.required("faces")) {
+    if (const auto faces = is_box ? std::nullopt : reader.required("faces")) {
         const auto last = static_cast<std::int64_t>(shape->corners.size()) - 1;
         for (const Value& face : faces->array(4, kShapeFacesMax).value_or(NoValues())) {
             Face& corners = shape->faces.emplace_back();
@@ -66,7 +75,7 @@ std::shared_ptr<const Shape> read_shape(const Value& given) {
     if (const auto smooth = reader.optional("smooth")) {
         shape->smooth_degrees = smooth->number(0, 180).value_or(0);
     }
-    if (const auto even = reader.optional("even")) {
+    if (const auto even = has_axes ? reader.optional("even") : std::nullopt) {
         for (const Value& axis : even->array(2, 3).value_or(NoValues())) {
             if (const auto number = axis.one_of(kAxes)) {
                 shape->is_even.at(*number) = true;
@@ -80,6 +89,12 @@ std::shared_ptr<const Shape> read_shape(const Value& given) {
     given.faults().add_all("", faults.take());
     return shape;
 }
+
+}  // namespace
+
+std::shared_ptr<const Shape> read_shape(const Value& given) { return read(given, true); }
+
+std::shared_ptr<const Shape> read_mesh(const Value& given) { return read(given, false); }
 
 OrderedJson write_shape(const Shape& shape) {
     OrderedJson vertices = OrderedJson::array();

@@ -4,7 +4,7 @@
 
 #include "proto/json.h"
 #include "proto/limits.h"
-#include "solver/continuous/constraints.h"
+#include "solver/continuous/constraints/constraints.h"
 
 #include <vector>
 

@@ -1,9 +1,11 @@
 // Examples of the continuous solver.
 
 #include "proto/continuous_codec.h"
+#include "proto/decoration_codec.h"
 #include "proto/example_codec.h"
 #include "proto/image_codec.h"
 #include "proto/shape_codec.h"
+#include "proto/solid_constraint_codec.h"
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/mesh_import.h"
@@ -63,6 +65,9 @@ class SolidsReader {
         read_list("objects", continuous::kObjectTypesMax, [this](const Value& object) {
             read_object(object);
         });
+        for (const auto& [object, decorations] : decorations_) {
+            example_.objects[object].decorations = read_decorations(decorations, example_);
+        }
         read_list("polyhedra", kPolyhedraMax, [this](const Value& solid) { read_solid(solid); });
         if (const auto ground = reader_.optional("ground")) {
             example_.ground = object_named(*ground);
@@ -157,6 +162,9 @@ class SolidsReader {
         if (const auto shape = reader.optional("shape")) {
             object.shape = read_shape(*shape);
         }
+        if (const auto decorations = reader.optional("decorations")) {
+            decorations_.emplace_back(example_.objects.size(), *decorations);
+        }
         reader.finish();
         material.name = object.name;
         object.material = static_cast<std::uint32_t>(example_.materials.size());
@@ -239,12 +247,29 @@ class SolidsReader {
                 read_dimension(value);
             }
         }
+        if (const auto constraints = reader_.optional("constraints")) {
+            read_constraints(*constraints);
+        }
         if (const auto connected = reader_.optional("connected")) {
             for (const Value& value : connected->array(0, 256).value_or(NoValues())) {
                 std::vector<ObjectId>& together = example_.connected.emplace_back();
                 for (const Value& object :
                      value.array(1, continuous::kObjectTypesMax).value_or(NoValues())) {
                     together.push_back(object_named(object));
+                }
+            }
+        }
+    }
+
+    void read_constraints(const Value& value) {
+        example_.constraints = read_solid_constraints(value, limits_);
+        for (const continuous::Constraint& constraint : example_.constraints) {
+            for (const std::string& name : constraint.objects) {
+                const bool is_known = continuous::find_object(example_, name) != continuous::kEmpty ||
+                                      (continuous::may_name_empty(constraint.rule) &&
+                                       name == continuous::kEmptyName);
+                if (!is_known) {
+                    value.fault("the example has no object \"" + name + "\"");
                 }
             }
         }
@@ -274,6 +299,8 @@ class SolidsReader {
     ObjectReader reader_;
     continuous::Example example_;
     std::vector<SharedImage> images_;  // null: there is a fault
+    // By object; they are read after all objects, which they may name.
+    std::vector<std::pair<std::size_t, Value>> decorations_;
     bool is_size_given_ = false;
     bool is_spacing_given_ = false;
 };
@@ -332,6 +359,9 @@ OrderedJson write_solids(const continuous::Example& given) {
         if (const auto& shape = example.objects[i].shape) {
             objects[i]["shape"] = write_shape(*shape);
         }
+        if (!example.objects[i].decorations.empty()) {
+            objects[i]["decorations"] = write_decorations(example.objects[i].decorations, example);
+        }
     }
     OrderedJson polyhedra = OrderedJson::array();
     for (const Polyhedron& solid : example.polyhedra) {
@@ -369,6 +399,7 @@ OrderedJson write_solids(const continuous::Example& given) {
         {"polyhedra", std::move(polyhedra)},
         {"dimensions", std::move(dimensions)},
         {"connected", std::move(connected)},
+        {"constraints", write_constraints(example.constraints)},
         {"spacing", example.spacing},
         {"size", example.size},
         {"density", example.density}};

@@ -1,8 +1,8 @@
 #include "solver/continuous/analysis.h"
 
 #include "solver/continuous/display/expressions.h"
-#include "solver/continuous/reading.h"
-#include "solver/continuous/spacing.h"
+#include "solver/continuous/planes/spacing.h"
+#include "solver/continuous/reading/reading.h"
 
 #include <algorithm>
 

@@ -1,9 +1,12 @@
 #include "solver/continuous/domains.h"
 
-#include "solver/continuous/object_rules.h"
+#include "solver/continuous/constraints/object_rules.h"
 #include "solver/core/weight_tables.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -35,10 +38,11 @@ std::vector<DimensionFilter> dimension_filters(
     for (const Constraint& constraint : *parameters.constraints) {
         if (const auto* rule = std::get_if<DimensionRule>(&constraint.rule)) {
             const auto& [x, y, z] = rule->normal;
-            const std::size_t family = *reading.topes().find_family(Point(x, y, z));
             const ObjectSet objects = objects_named(reading.example(), constraint.objects);
             for (std::size_t object = 1; object < objects.size(); ++object) {
                 if (objects[object]) {
+                    const Eigen::Matrix3d& turn = reading.example().objects[object - 1].turn;
+                    const std::size_t family = *reading.find_family(turn * Point(x, y, z));
                     filters.push_back({family, static_cast<char>(object), rule->spacings});
                 }
             }
@@ -75,6 +79,7 @@ class DomainMaker {
         std::span<const Label> plain
     )
         : figures_(reading.figures()),
+          boundary_(parameters.boundary),
           arrangement_(arrangement),
           planes_(planes),
           plain_(plain),
@@ -89,7 +94,7 @@ class DomainMaker {
             const FamilySet families = arrangement_.families(site);
             std::vector<Heading> leaving;
             for (const ArrangementEdge& edge : arrangement_.edges(site)) {
-                if (edge.end == kNoSite) {
+                if (edge.end == kNoSite && leaves_closed_side(site, edge.heading)) {
                     leaving.push_back(edge.heading);
                 }
             }
@@ -110,6 +115,31 @@ class DomainMaker {
     }
 
   private:
+    // Whether an edge that leaves the arrangement's box does so where the model ends.
+    [[nodiscard]] bool leaves_closed_side(Site site, Heading heading) const {
+        const Bounds& box = arrangement_.frame().box;
+        const Point& from = arrangement_.position(site);
+        const Point along = arrangement_.topes().direction(heading);
+        std::array<double, 6> ways;
+        ways.fill(std::numeric_limits<double>::infinity());
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(along[axis]) > 1e-9) {
+                const bool is_max = along[axis] > 0;
+                const double limit = is_max ? box.max[axis] : box.min[axis];
+                ways[static_cast<std::size_t>(2 * axis + int{is_max})] =
+                    (limit - from[axis]) / along[axis];
+            }
+        }
+        const double first = *std::min_element(ways.begin(), ways.end());
+        const double same = 1e-9 * (box.max - box.min).maxCoeff();
+        for (std::size_t side = 0; side < ways.size(); ++side) {
+            if (boundary_[side] == SideKind::kClosed && ways[side] <= first + same) {
+                return true;
+            }
+        }
+        return false;
+    }
+
     [[nodiscard]] Layer layer_of(Site site, const DimensionFilter& dimension) const {
         const std::size_t family = dimension.family;
         if ((arrangement_.families(site) >> family & 1) == 0) {
@@ -148,6 +178,7 @@ class DomainMaker {
     }
 
     const Figures& figures_;
+    const std::array<SideKind, 6>& boundary_;
     const Arrangement& arrangement_;
     const ModelPlanes& planes_;
     std::span<const Label> plain_;
@@ -157,13 +188,13 @@ class DomainMaker {
 std::vector<double> weights_of_objects(const Example& example, const Parameters& parameters) {
     std::vector<double> weights = {1};
     for (const ObjectType& object : example.objects) {
-        const ObjectType& whole =
-            object.rest_of == kEmpty ? object : example.objects[object.rest_of - 1U];
-        double weight = object.weight;
-        for (const auto& [name, given] : parameters.weights) {
-            weight = name == whole.name ? given : weight;
+        weights.push_back(object.weight);
+    }
+    for (const auto& [name, weight] : parameters.weights) {
+        const ObjectSet objects = objects_named(example, {name});
+        for (std::size_t object = 1; object < weights.size(); ++object) {
+            weights[object] = objects[object] ? weight : weights[object];
         }
-        weights.push_back(weight);
     }
     return weights;
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/model_planes.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/planes/model_planes.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
 
@@ -12,9 +12,9 @@
 namespace modelsynth::continuous {
 
 // The figures each vertex may take by itself: those that change only across its planes, that look
-// the same as `plain` along edges that leave the box, and that weights, dimensions and regions
-// leave.
-// Cost: O(kinds of vertices * figures), and that of narrow_to_regions().
+// the same as `plain` along edges that leave the box where it is closed, and that weights,
+// dimensions and regions leave. Cost: O(kinds of vertices * figures), and that of
+// narrow_to_regions().
 [[nodiscard]] SiteDomains make_domains(
     const ExampleReading& reading,
     const Parameters& parameters,

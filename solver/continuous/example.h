@@ -1,5 +1,7 @@
 #pragma once
 
+#include "solver/continuous/constraints/constraints.h"
+#include "solver/continuous/decoration/decoration.h"
 #include "solver/mesh/mesh.h"
 
 #include <Eigen/Core>
@@ -44,6 +46,10 @@ struct ObjectType {
     std::shared_ptr<const Shape> shape = nullptr;  // null: it looks like its solids
     // Not kEmpty: no object of its own, but what was cut off that one's boxes; see cut_boxes().
     ObjectId rest_of = kEmpty;
+    std::vector<Decoration> decorations = {};  // of its edges and corners in models
+    // Not kEmpty: no object of its own, but that one as it became by a turn; see variants.h.
+    ObjectId variant_of = kEmpty;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
 
     friend bool operator==(const ObjectType&, const ObjectType&) = default;
 };
@@ -88,6 +94,7 @@ struct Example {
     // all together hang together (thesis 4.6.2).
     std::vector<Dimension> dimensions;
     std::vector<std::vector<ObjectId>> connected;
+    std::vector<Constraint> constraints;       // others that hold so, such as where objects may be
     double spacing = 1;                        // default distance of parallel planes, metres
     std::array<double, 3> size = {20, 8, 20};  // default size of a model, metres
     double density = 0.3;                      // default; see Parameters

@@ -1,7 +1,7 @@
 #include "solver/continuous/faults.h"
 
-#include "solver/continuous/model_planes.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/planes/model_planes.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/symmetry_fault.h"
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ std::string number(double value) {
 // How many planes of each family there are, counted by lengths; each is at least one.
 std::vector<double> count_planes(const ExampleReading& reading, const Parameters& parameters) {
     const std::span<const Point> normals = reading.topes().normals();
-    const Bounds box = model_box(reading, parameters);
+    const Bounds box = arranged_box(reading, parameters);
     const Spacings spacings = spacings_of(reading, parameters);
     std::vector<double> counts;
     for (std::size_t family = 0; family < normals.size(); ++family) {
@@ -41,7 +41,7 @@ std::vector<double> count_planes(const ExampleReading& reading, const Parameters
         counts.push_back(spacing > 0 ? std::max(1.0, (reach.high - reach.low) / spacing) : 1);
     }
     for (const FamilyOffsets& listed : parameters.offsets) {
-        const auto family = *reading.topes().find_family(point_of(listed.normal));
+        const auto family = *reading.find_family(point_of(listed.normal));
         counts[family] = std::max(counts[family], static_cast<double>(listed.offsets.size()));
     }
     return counts;
@@ -64,7 +64,7 @@ double meetings(
     const ExampleReading& reading, const Parameters& parameters, std::span<const double> steps
 ) {
     const std::span<const Point> n = reading.topes().normals();
-    const std::array<double, 3>& size = *parameters.size;
+    const Bounds box = arranged_box(reading, parameters);
     double sum = 0;
     for (std::size_t a = 0; a < n.size(); ++a) {
         for (std::size_t b = a + 1; b < n.size(); ++b) {
@@ -73,7 +73,7 @@ double meetings(
             }
         }
     }
-    return sum * size[0] * size[1] * size[2];
+    return sum * (box.max - box.min).prod();
 }
 
 class FaultFinder {
@@ -86,6 +86,7 @@ class FaultFinder {
             check_size();
         }
         is_size_good_ = faults_.empty();
+        check_disorder();
         for (const auto& [name, weight] : parameters_.weights) {
             check_object("/weights/" + pointer_part(name), name);
         }
@@ -96,6 +97,24 @@ class FaultFinder {
     }
 
   private:
+    // What is moved at random has no image.
+    void check_disorder() {
+        const bool is_symmetric = std::any_of(
+            parameters_.constraints->begin(),
+            parameters_.constraints->end(),
+            [](const Constraint& constraint) {
+                return std::holds_alternative<SymmetryRule>(constraint.rule);
+            }
+        );
+        const std::string detail = "must be 0 where there is a symmetry";
+        if (is_symmetric && parameters_.jitter > 0) {
+            faults_.push_back({"/jitter", detail});
+        }
+        if (is_symmetric && parameters_.perturbation > 0) {
+            faults_.push_back({"/perturbation", detail});
+        }
+    }
+
     void check_object(const std::string& pointer, const std::string& name) {
         if (find_object(reading_.example(), name) == kEmpty) {
             faults_.push_back({pointer, "the example has no object \"" + name + "\""});
@@ -109,7 +128,7 @@ class FaultFinder {
             }
             const Point normal = point_of(dimension->normal);
             const bool has_length = normal.norm() > 1e-9;  // else that is a fault of its own
-            if (has_length && !reading_.topes().find_family(normal)) {
+            if (has_length && !reading_.find_family(normal)) {
                 faults_.push_back(
                     {pointer + "/normal", "no face of the example has this normal or its opposite"}
                 );
@@ -172,7 +191,7 @@ class FaultFinder {
         if (point_of(normal).norm() <= 1e-9) {
             return false;  // a fault of its own
         }
-        const auto family = reading_.topes().find_family(point_of(normal));
+        const auto family = reading_.find_family(point_of(normal));
         if (!family) {
             faults_.push_back(
                 {pointer + "/normal", "no face of the example has this normal or its opposite"}
@@ -200,7 +219,7 @@ class FaultFinder {
                      number(*parameters_.spacing) + " metres",
                  true}
             );
-        } else if (parameters_.spacings.empty() && parameters_.offsets.empty()) {
+        } else if (parameters_.spacings.empty() && parameters_.offsets.empty() && reading_.nudged() == nullptr) {
             // What follows from one spacing is close to it: not worth the time to work it out.
             const std::size_t families = reading_.topes().family_count();
             check_meetings(std::vector<double>(families, *parameters_.spacing));
@@ -221,7 +240,7 @@ class FaultFinder {
             );
             return;
         }
-        const Bounds box = model_box(reading_, parameters_);
+        const Bounds box = arranged_box(reading_, parameters_);
         std::vector<double> steps;
         for (std::size_t family = 0; family < counts.size(); ++family) {
             const Reach reach = reach_along(reading_.topes().normals()[family], box);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
+#include "solver/continuous/planes/arrangement.h"
 #include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/graph_topology.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"

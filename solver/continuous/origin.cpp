@@ -1,12 +1,12 @@
 #include "solver/continuous/origin.h"
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/coverage.h"
-#include "solver/continuous/model_planes.h"
+#include "solver/continuous/constraints/coverage.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/planes/model_planes.h"
+#include "solver/continuous/planes/vertex_finder.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/plane_images.h"
-#include "solver/continuous/vertex_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +27,7 @@ Parameters parameters_of(const Parameters& parameters, const Origin& origin) {
     }
     Parameters older = parameters;
     older.size = origin.size;
+    older.boundary = {};
     older.constraints.emplace();
     for (FamilyOffsets& family : older.offsets) {
         const Point normal = Point(family.normal[0], family.normal[1], family.normal[2]);
@@ -92,7 +93,11 @@ bool has_planes_of(
     const Parameters& earlier
 ) {
     const double tolerance = tolerance_of(parameters);
-    const ModelPlanes now = make_planes(reading, parameters_of(parameters, origin));
+    const Parameters expected = parameters_of(parameters, origin);
+    if (expected.boundary != earlier.boundary) {
+        return false;
+    }
+    const ModelPlanes now = make_planes(reading, expected);
     const ModelPlanes then = make_planes(reading, earlier);
     for (std::size_t family = 0; family < now.offsets.size(); ++family) {
         const PlaneOffsets& offsets = now.offsets[family];
@@ -121,7 +126,7 @@ Result<Start> place_origin(
     auto before = Arrangement::make(
         reading.topes(),
         make_planes(reading, older).offsets,
-        {model_box(reading, older), cells, *older.spacing},
+        {arranged_box(reading, older), cells, *older.spacing},
         kVerticesMax
     );
     if (!before) {

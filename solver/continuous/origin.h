@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/constraints.h"
+#include "solver/continuous/constraints/constraints.h"
 #include "solver/continuous/parameters.h"
 #include "solver/core/label_set.h"
 #include "solver/core/result.h"
@@ -32,7 +32,8 @@ struct Origin {
     const ExampleReading& reading, const Parameters& parameters, const Origin& origin
 );
 
-// Whether a model made with the earlier parameters has the planes that the origin of this one has.
+// Whether a model made with the earlier parameters has the planes that the origin of this one has,
+// and ends as it does: in a larger one its sides have to be closed.
 // Requires: find_origin_faults() finds nothing.
 [[nodiscard]] bool has_planes_of(
     const ExampleReading& reading,

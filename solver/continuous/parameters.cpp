@@ -13,7 +13,7 @@ namespace {
 constexpr std::int32_t kFullHeightMax = 16;
 
 std::vector<Constraint> constraints_of(const Example& example) {
-    std::vector<Constraint> constraints;
+    std::vector<Constraint> constraints = example.constraints;
     for (const Dimension& dimension : example.dimensions) {
         const Point& n = dimension.normal;
         constraints.push_back(

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/constraints.h"
+#include "solver/continuous/constraints/constraints.h"
 #include "solver/core/block_schedule.h"
 #include "solver/core/grid.h"
 #include "solver/core/result.h"
@@ -31,6 +31,22 @@ struct FamilyOffsets {
     friend bool operator==(const FamilyOffsets&, const FamilyOffsets&) = default;
 };
 
+// In which ways an example is read besides as it stands: as many turns about the upright axis as
+// make a whole one, and mirrored across x or z; what these are together, too.
+struct Variants {
+    std::uint8_t turns = 1;  // 1, 2 or 4
+    bool mirror_x = false;
+    bool mirror_z = false;
+
+    friend bool operator==(const Variants&, const Variants&) = default;
+};
+
+// What stands at a side of a model's box.
+enum class SideKind : std::uint8_t {
+    kClosed,  // empty space, or bare ground: the model ends within
+    kFree,    // anything: the model goes on beyond, and is cut off there
+};
+
 // What a continuous synthesis can be asked for; plain data.
 struct Parameters {
     std::optional<std::array<double, 3>> size;  // metres; none: the example's default
@@ -41,6 +57,17 @@ struct Parameters {
     std::vector<FamilyOffsets> offsets;
     // In spacings. None: chosen to suit the size; a value without blocks: the whole at once.
     std::optional<std::optional<Blocks>> blocks;
+    Variants variants;
+    // Degrees, 0 ... kNudgeMax: by how much faces may be turned so that spacings fit; see nudge().
+    double nudge = 0;
+    // Side 2 * axis at the smaller end of the axis, 2 * axis + 1 at the larger one.
+    std::array<SideKind, 6> boundary = {};
+    // 0 ... kJitterMax: by what share of their spacing planes are moved, where no figure needs
+    // planes of more than three directions, and nothing has to be so wide across them.
+    double jitter = 0;
+    // 0 ... kPerturbationMax: by what share of the least distance of planes faces are moved once
+    // the model is made; see perturb().
+    double perturbation = 0;
     // 0 ... 1: how full the model is to be. What is empty space or bare ground has the weight
     // density^-2 against all else. None: the example's.
     std::optional<double> density;
@@ -53,6 +80,9 @@ struct Parameters {
     friend bool operator==(const Parameters&, const Parameters&) = default;
 };
 
+inline constexpr double kNudgeMax = 15;
+inline constexpr double kJitterMax = 0.5;
+inline constexpr double kPerturbationMax = 0.3;
 inline constexpr std::int32_t kCellsAlongMax = 4096;
 inline constexpr std::size_t kOffsetsMax = 4096;  // of one family
 

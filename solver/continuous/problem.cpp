@@ -1,9 +1,9 @@
 #include "solver/continuous/problem.h"
 
+#include "solver/continuous/constraints/object_rules.h"
 #include "solver/continuous/domains.h"
 #include "solver/continuous/initial_model.h"
-#include "solver/continuous/model_planes.h"
-#include "solver/continuous/object_rules.h"
+#include "solver/continuous/planes/model_planes.h"
 
 #include <algorithm>
 #include <map>
@@ -32,6 +32,21 @@ std::vector<Label> find_homeless(const Figures& figures, const Arrangement& arra
         }
     }
     return homeless;
+}
+
+// The ground, and what has a dimension.
+std::vector<bool> firm_objects(const ExampleReading& reading, const Parameters& parameters) {
+    std::vector<bool> is_firm(reading.example().objects.size() + 1);
+    is_firm[reading.example().ground.value_or(kEmpty)] = true;
+    for (const Constraint& constraint : *parameters.constraints) {
+        if (std::holds_alternative<DimensionRule>(constraint.rule)) {
+            const ObjectSet named = objects_named(reading.example(), constraint.objects);
+            for (std::size_t object = 1; object < is_firm.size(); ++object) {
+                is_firm[object] = is_firm[object] || named[object];
+            }
+        }
+    }
+    return is_firm;
 }
 
 std::vector<Connection> connections_of(
@@ -114,7 +129,7 @@ Result<Problem> make_problem(
     const Figures& figures = reading->figures();
     ModelPlanes planes = make_planes(*reading, parameters);
     const Arrangement::Frame frame = {
-        model_box(*reading, parameters), cells_of(parameters), *parameters.spacing};
+        arranged_box(*reading, parameters), cells_of(parameters), *parameters.spacing};
     auto arrangement = Arrangement::make(topes, planes.offsets, frame, kVerticesMax);
     if (!arrangement) {
         return tl::unexpected(std::move(arrangement.error()));
@@ -159,9 +174,14 @@ Result<Problem> make_problem(
     }
     std::vector<Label> homeless = find_homeless(figures, *arrangement);
     std::vector<Connection> connections = connections_of(*reading, parameters);
+    const double perturbation =
+        parameters.perturbation > 0 ? parameters.perturbation * arrangement->least_distance() : 0;
+    const Bounds box = model_box(*reading, parameters);
+    std::vector<bool> firm = firm_objects(*reading, parameters);
     return Problem{
         std::move(reading),
         std::move(planes.spacings),
+        box,
         std::move(*arrangement),
         std::move(domains),
         std::move(*weights),
@@ -169,7 +189,9 @@ Result<Problem> make_problem(
         std::move(is_kept),
         std::move(homeless),
         std::move(connections),
-        std::move(symmetries)};
+        std::move(symmetries),
+        perturbation,
+        std::move(firm)};
 }
 
 }  // namespace modelsynth::continuous

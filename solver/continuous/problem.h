@@ -1,11 +1,11 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/connections.h"
+#include "solver/continuous/constraints/connections.h"
 #include "solver/continuous/origin.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/reading.h"
-#include "solver/continuous/spacing.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/planes/spacing.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/symmetries.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
@@ -23,6 +23,7 @@ inline constexpr std::size_t kVerticesMax = 2'000'000;
 struct Problem {
     std::shared_ptr<const ExampleReading> reading;
     Spacings spacings;
+    Bounds box;  // of the model; that of the arrangement may be larger
     Arrangement arrangement;
     SiteDomains domains;
     SiteWeights weights;
@@ -34,6 +35,8 @@ struct Problem {
     std::vector<Label> homeless;
     std::vector<Connection> connections;
     std::unique_ptr<const Symmetries> symmetries;  // null: none
+    double perturbation = 0;                       // metres by which faces may be moved
+    std::vector<bool> is_firm;                     // by object: its faces may not
 
     // Along edges, and to images.
     [[nodiscard]] const Relations& relations() const {

@@ -1,6 +1,8 @@
 #include "solver/continuous/scene.h"
 
-#include "solver/continuous/families.h"
+#include "solver/continuous/decoration/decoration_meshes.h"
+#include "solver/continuous/decoration/placed_decorations.h"
+#include "solver/continuous/reading/families.h"
 #include "solver/continuous/shapes/placed_shapes.h"
 #include "solver/continuous/triangulation/triangulation.h"
 
@@ -210,6 +212,34 @@ class MeshBuilder {
     std::vector<std::size_t> primitive_of_material_;
 };
 
+// Of a part of the model what has its place there, and that whole.
+void draw_decorations(
+    const Example& example,
+    const PlacedDecorations& decorations,
+    const Bounds* part,
+    MeshBuilder& builder
+) {
+    const auto material_of = [&example](ObjectId object, ObjectId look) {
+        return example.objects[(look == kEmpty ? object : look) - 1U].material;
+    };
+    for (const Sweep& sweep : decorations.sweeps) {
+        if (part != nullptr && !is_in_part(place_of(sweep), *part)) {
+            continue;
+        }
+        const std::uint32_t material = material_of(sweep.object, sweep.decoration->look);
+        const SweptMesh mesh = mesh_of(sweep);
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            builder.add(material, mesh.corners, {mesh.faces[f]}, mesh.normals[f]);
+        }
+    }
+    for (const PlacedMesh& mesh : decorations.meshes) {
+        if (part == nullptr || is_in_part(mesh.at, *part)) {
+            const std::uint32_t material = material_of(mesh.object, mesh.decoration->look);
+            builder.add_triangles(material, triangles_of(mesh), nullptr);
+        }
+    }
+}
+
 Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* part) {
     const Example& example = reading.example();
     MeshBuilder builder(example, "model");
@@ -223,11 +253,7 @@ Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* 
         if (polygon.family != kNoFamily) {
             normal = (polygon.is_along_normal ? 1 : -1) * reading.topes().normals()[polygon.family];
         } else {
-            const std::vector<std::uint32_t>& loop = polygon.loops.front();
-            const Point& origin = surface.points[loop[0]];
-            normal = (surface.points[loop[1]] - origin)
-                         .cross(surface.points[loop[2]] - origin)
-                         .normalized();
+            normal = area_vector(surface.points, polygon.loops.front()).normalized();
         }
         builder.add(
             example.objects[polygon.object - 1U].material,
@@ -241,6 +267,12 @@ Scene draw(const ExampleReading& reading, const Surface& surface, const Bounds* 
         const ObjectType& object = example.objects[one.object - 1U];
         builder.add_triangles(object.material, triangles_of(*object.shape, one.box), part);
     }
+    draw_decorations(
+        example,
+        place_decorations(example, reading.topes().normals(), surface, placed),
+        part,
+        builder
+    );
     return builder.finish();
 }
 

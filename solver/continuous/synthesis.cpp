@@ -1,8 +1,10 @@
 #include "solver/continuous/synthesis.h"
 
+#include "solver/continuous/constraints/growth.h"
 #include "solver/continuous/graph_part.h"
 #include "solver/core/block_schedule.h"
 #include "solver/core/block_search.h"
+#include "solver/core/parallel_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +23,6 @@ namespace {
 constexpr std::size_t kBlockCountMax = 1'000'000;
 constexpr std::uint32_t kWholeAttempts = 8;
 
-// RandomKey::purpose of where a connected object begins, beside kPurposeSearch.
-constexpr std::uint32_t kPurposeBeginning = 2;
-constexpr std::uint32_t kBeginningsTried = 8;
-
 Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
 
 double changed_from(std::span<const Label> initial, std::span<const Label> labels) {
@@ -34,37 +32,6 @@ double changed_from(std::span<const Label> initial, std::span<const Label> label
     }
     return labels.empty() ? 0 : static_cast<double>(changed) / static_cast<double>(labels.size());
 }
-
-// Nothing of what is to hang together begins by itself: it only goes on.
-class GrowthChooser final : public LabelChooser {
-  public:
-    explicit GrowthChooser(std::span<const LabelSet> growing) : growing_(growing) {}
-
-    void look_around(Site /*site*/, std::vector<Site>& around) const override { around.clear(); }
-
-    [[nodiscard]] Label choose(
-        std::span<const Word> possible,
-        std::span<const Site> /*around*/,
-        std::span<const Label> /*decided*/,
-        const LabelWeights& weights,
-        RandomStream& random
-    ) const override {
-        std::vector<Word> left(possible.begin(), possible.end());
-        std::vector<Word> without(possible.size());
-        for (const LabelSet& set : growing_) {
-            for (std::size_t word = 0; word < left.size(); ++word) {
-                without[word] = left[word] & ~set.words()[word];
-            }
-            if (!is_empty(without)) {
-                left = without;
-            }
-        }
-        return weights.draw(left, random);
-    }
-
-  private:
-    std::span<const LabelSet> growing_;
-};
 
 // Blocks from the middle of the model outwards, so that what hangs together can grow everywhere.
 void order_outwards(std::vector<Box>& schedule, const GridSize& cells) {
@@ -83,6 +50,45 @@ void order_outwards(std::vector<Box>& schedule, const GridSize& cells) {
     });
 }
 
+// The cells that some vertices lie in.
+class CellsTouched {
+  public:
+    explicit CellsTouched(const Arrangement& arrangement) : arrangement_(arrangement) {
+        const GridSize& cells = arrangement.frame().cells;
+        touched_ = {{cells.x - 1, cells.y - 1, cells.z - 1}, {1, 1, 1}};
+    }
+
+    void add(Site site) {
+        const GridSize& cells = arrangement_.frame().cells;
+        const Point at = arrangement_.position(site) / arrangement_.frame().cell;
+        const auto along = [&](int axis, std::int32_t count) {
+            return static_cast<std::int32_t>(std::clamp(std::floor(at[axis]), 0.0, count - 1.0));
+        };
+        const Cell cell = {along(0, cells.x), along(1, cells.y), along(2, cells.z)};
+        touched_.min = {
+            std::min(touched_.min.x, cell.x),
+            std::min(touched_.min.y, cell.y),
+            std::min(touched_.min.z, cell.z)};
+        touched_.max = {
+            std::max(touched_.max.x, cell.x + 1),
+            std::max(touched_.max.y, cell.y + 1),
+            std::max(touched_.max.z, cell.z + 1)};
+    }
+
+    [[nodiscard]] const Box& box() const { return touched_; }
+
+  private:
+    const Arrangement& arrangement_;
+    Box touched_;
+};
+
+// What a block came to.
+struct Solved {
+    BlockResult result;
+    std::vector<Site> sites;    // of its part; read when it was accepted, ...
+    std::vector<Label> labels;  // ... and what stands there then
+};
+
 // One run; the state that its steps share.
 class Run {
   public:
@@ -93,43 +99,25 @@ class Run {
           stop_(stop),
           search_(problem.relations(), problem.domains, problem.weights, &bases_),
           made_{problem.initial, {}} {
-        for (const Connection& connection : problem.connections) {
-            growing_.push_back(connection.figures);
-        }
-        if (!growing_.empty()) {
-            skeleton_ = std::make_unique<const Skeleton>(problem.arrangement);
-            connections_ = std::make_unique<Connections>(
-                problem.reading->figures(), *skeleton_, problem.connections
-            );
-            chooser_ = std::make_unique<const GrowthChooser>(growing_);
+        if (!problem.connections.empty()) {
+            growth_ = std::make_unique<Growth>(problem);
         }
     }
 
-    Result<Synthesis> make(const std::optional<Blocks>& blocks, const Checkpoint* from) {
+    Result<Synthesis> make(
+        const std::optional<Blocks>& blocks, const Checkpoint* from, std::uint32_t threads
+    ) {
         const GridSize& cells = problem_.arrangement.frame().cells;
-        std::vector<Box> schedule = {Box::whole(cells)};
+        schedule_ = {Box::whole(cells)};
         if (blocks) {
             auto cut = schedule_blocks(cells, blocks->layout, kBlockCountMax);
             if (!cut) {
                 return tl::unexpected(std::move(cut.error()));
             }
-            schedule = std::move(*cut);
+            schedule_ = std::move(*cut);
         }
-        if (problem_.symmetries) {
-            const double cell = problem_.arrangement.frame().cell;
-            std::erase_if(schedule, [&](const Box& block) {
-                return problem_.symmetries->is_filled_by_images(
-                    cell * Point(block.min.x, block.min.y, block.min.z)
-                );
-            });
-        }
-        if (!problem_.is_kept.empty()) {
-            std::erase_if(schedule, [&](const Box& block) { return free_vertices(block).empty(); });
-        }
-        if (connections_) {
-            order_outwards(schedule, cells);
-        }
-        total_ = static_cast<std::uint32_t>(schedule.size());
+        leave_out_what_is_made();
+        total_ = static_cast<std::uint32_t>(schedule_.size());
         if (from != nullptr) {
             check(
                 from->labels.size() == made_.labels.size() && from->blocks_done <= total_,
@@ -140,44 +128,137 @@ class Run {
             index_ = from->blocks_done;
         }
         observer_.on_start(total_, made_.labels);
-        if (connections_) {
-            connections_->start(made_.labels);
+        if (growth_) {
+            growth_->start(made_.labels);
         }
-        const std::uint32_t attempts = blocks ? blocks->attempts : kWholeAttempts;
-        for (; index_ < total_; ++index_) {
-            if (stop_.stop_requested() || !modify(schedule[index_], attempts)) {
-                return tl::unexpected(cancelled());
-            }
+        attempts_ = blocks ? blocks->attempts : kWholeAttempts;
+        // What grows, or has images, may depend on blocks far away.
+        const bool is_local = growth_ == nullptr && problem_.symmetries == nullptr;
+        if (!(is_local && threads > 1 ? modify_in_parallel(threads) : modify_in_order())) {
+            return tl::unexpected(cancelled());
         }
         return finish(blocks.has_value());
     }
 
   private:
+    void leave_out_what_is_made() {
+        if (problem_.symmetries) {
+            const double cell = problem_.arrangement.frame().cell;
+            std::erase_if(schedule_, [&](const Box& block) {
+                return problem_.symmetries->is_filled_by_images(
+                    cell * Point(block.min.x, block.min.y, block.min.z)
+                );
+            });
+        }
+        if (!problem_.is_kept.empty()) {
+            std::erase_if(schedule_, [&](const Box& block) {
+                return free_vertices(block).empty();
+            });
+        }
+        if (growth_) {
+            order_outwards(schedule_, problem_.arrangement.frame().cells);
+        }
+    }
+
     // False when it was stopped.
-    bool modify(const Box& block, std::uint32_t attempts) {
-        const GraphPart part =
-            part_of(problem_.arrangement, free_vertices(block), problem_.symmetries.get());
-        BlockOptions options;
-        options.attempts = attempts;
-        options.order = Order::kRandom;
-        const RandomKey key = {seed_, index_, 0, 0};
-        BlockResult result;
-        if (connections_) {
-            connections_->enter(part.sites());
-            options.judge = connections_.get();
-            options.growing = growing_;
-            options.chooser = chooser_.get();
-            result = begin_something(part, options, key);
+    bool modify_in_order() {
+        for (; index_ < total_; ++index_) {
+            if (stop_.stop_requested()) {
+                return false;
+            }
+            const GraphPart part = part_of_block(index_);
+            const BlockResult result = modify(part, made_.labels, index_, search_);
+            if (result.outcome == BlockOutcome::kStopped) {
+                return false;
+            }
+            report(index_, problem_.symmetries ? cells_of(part) : schedule_[index_], result);
         }
-        if (result.outcome != BlockOutcome::kAccepted && result.outcome != BlockOutcome::kStopped) {
-            options.pin.reset();
-            result = search_.modify(part, made_.labels, options, key, stop_);
-        }
-        if (result.outcome == BlockOutcome::kStopped) {
-            return false;
-        }
-        report(problem_.symmetries ? cells_touched(part) : block, result);
         return true;
+    }
+
+    bool modify_in_parallel(std::uint32_t threads) {
+        const auto reaches = reaches_of_blocks();
+        std::vector<Label> ahead = made_.labels;
+        using Search = BlockSearch<GraphPart>;
+        const auto solve = [&](Search& search, std::uint32_t block) -> std::optional<Solved> {
+            const GraphPart part = part_of_block(block);
+            Solved solved = {modify(part, ahead, block, search), {}, {}};
+            if (solved.result.outcome == BlockOutcome::kStopped) {
+                return std::nullopt;
+            }
+            if (solved.result.outcome == BlockOutcome::kAccepted) {
+                solved.sites.assign(part.sites().begin(), part.sites().end());
+                for (const Site site : solved.sites) {
+                    solved.labels.push_back(ahead[site]);
+                }
+            }
+            return solved;
+        };
+        using Parallel = ParallelBlocks<Solved>;
+        return Parallel(problem_.arrangement.frame().cells, {}, reaches, index_)
+            .run(
+                threads,
+                [&](std::uint32_t block) { return solve(search_, block); },
+                [&]() -> Parallel::Solver {
+                    auto search = std::make_shared<Search>(
+                        problem_.relations(), problem_.domains, problem_.weights, &bases_
+                    );
+                    return [&solve, search](std::uint32_t block) { return solve(*search, block); };
+                },
+                [&](std::uint32_t block, const Solved& solved) {
+                    for (std::size_t i = 0; i < solved.sites.size(); ++i) {
+                        made_.labels[solved.sites[i]] = solved.labels[i];
+                    }
+                    report(block, schedule_[block], solved.result);
+                }
+            );
+    }
+
+    // By block, the cells of all vertices that it may change and of those that it looks at.
+    [[nodiscard]] std::vector<Box> reaches_of_blocks() const {
+        std::vector<Box> reaches;
+        for (const Box& block : schedule_) {
+            CellsTouched cells(problem_.arrangement);
+            problem_.arrangement.for_each_vertex(block, [&](Site site) {
+                cells.add(site);
+                for (const ArrangementEdge& edge : problem_.arrangement.edges(site)) {
+                    if (edge.end != kNoSite) {
+                        cells.add(edge.end);
+                    }
+                }
+            });
+            reaches.push_back(cells.box());
+        }
+        return reaches;
+    }
+
+    [[nodiscard]] GraphPart part_of_block(std::uint32_t block) const {
+        return part_of(
+            problem_.arrangement, free_vertices(schedule_[block]), problem_.symmetries.get()
+        );
+    }
+
+    BlockResult modify(
+        const GraphPart& part,
+        std::vector<Label>& labels,
+        std::uint32_t block,
+        BlockSearch<GraphPart>& search
+    ) {
+        BlockOptions options;
+        options.attempts = attempts_;
+        options.order = Order::kRandom;
+        const RandomKey key = {seed_, block, 0, 0};
+        if (growth_) {
+            growth_->enter(part, options);
+            BlockResult begun =
+                growth_->begin_something(search, part, labels, options, key, total_ - block, stop_);
+            const bool is_done =
+                begun.outcome == BlockOutcome::kAccepted || begun.outcome == BlockOutcome::kStopped;
+            if (is_done) {
+                return begun;
+            }
+        }
+        return search.modify(part, labels, options, key, stop_);
     }
 
     // Those of a block that are not to stay as they are, in rising order.
@@ -191,105 +272,15 @@ class Run {
         return vertices;
     }
 
-    // The block with something in it of the first connection of which there is nothing elsewhere,
-    // or less than there may be: the largest of some tries, since what happens to close early stays
-    // small. kReverted where there is no such connection, or nothing of it fits.
-    BlockResult begin_something(const GraphPart& part, BlockOptions options, const RandomKey& key) {
-        RandomStream random({key.seed, key.block, 0, kPurposeBeginning});
-        options.attempts = 1;
-        for (std::size_t i = 0; i < growing_.size() && !part.sites().empty(); ++i) {
-            if (!is_beginning_due(i, random)) {
-                continue;
-            }
-            const std::vector<Label> before = labels_of(part);
-            std::vector<Label> largest;
-            std::size_t largest_size = 0;
-            BlockResult best;
-            for (std::uint32_t tried = 0; tried < kBeginningsTried; ++tried) {
-                const auto count = static_cast<std::uint32_t>(part.sites().size());
-                options.pin = Pin{random.below(count), &growing_[i]};
-                BlockResult result = search_.modify(part, made_.labels, options, key, stop_);
-                if (result.outcome == BlockOutcome::kStopped) {
-                    return result;
-                }
-                if (result.outcome != BlockOutcome::kAccepted) {
-                    continue;
-                }
-                const std::size_t size = members_in(part, growing_[i]);
-                if (size > largest_size) {
-                    largest_size = size;
-                    largest = labels_of(part);
-                    best = result;
-                }
-                put(part, before);
-            }
-            if (largest_size > 0) {
-                put(part, largest);
-                return best;
-            }
-        }
-        return {};
-    }
-
-    [[nodiscard]] bool is_beginning_due(std::size_t connection, RandomStream& random) const {
-        const std::uint32_t components = problem_.connections[connection].components;
-        const std::uint32_t there = connections_->components(connection);
-        if (components == 1) {
-            return there == 0 || (there == 1 && connections_->is_all_inside(connection));
-        }
-        // Spread over the blocks to come.
-        return there < components && random.below(total_ - index_) < components - there;
-    }
-
-    [[nodiscard]] Box cells_touched(const GraphPart& part) const {
-        const Arrangement::Frame& frame = problem_.arrangement.frame();
-        const GridSize& cells = frame.cells;
-        Box touched = {{cells.x - 1, cells.y - 1, cells.z - 1}, {1, 1, 1}};
+    [[nodiscard]] Box cells_of(const GraphPart& part) const {
+        CellsTouched cells(problem_.arrangement);
         for (const Site site : part.sites()) {
-            const Point at = problem_.arrangement.position(site) / frame.cell;
-            const auto along = [&](int axis, std::int32_t count) {
-                return static_cast<std::int32_t>(std::clamp(std::floor(at[axis]), 0.0, count - 1.0)
-                );
-            };
-            const Cell cell = {along(0, cells.x), along(1, cells.y), along(2, cells.z)};
-            touched.min = {
-                std::min(touched.min.x, cell.x),
-                std::min(touched.min.y, cell.y),
-                std::min(touched.min.z, cell.z)};
-            touched.max = {
-                std::max(touched.max.x, cell.x + 1),
-                std::max(touched.max.y, cell.y + 1),
-                std::max(touched.max.z, cell.z + 1)};
+            cells.add(site);
         }
-        return touched;
+        return cells.box();
     }
 
-    [[nodiscard]] std::vector<Label> labels_of(const GraphPart& part) const {
-        std::vector<Label> labels;
-        for (const Site site : part.sites()) {
-            labels.push_back(made_.labels[site]);
-        }
-        return labels;
-    }
-
-    [[nodiscard]] std::size_t members_in(const GraphPart& part, const LabelSet& figures) const {
-        const auto is_member = [&](Site site) { return figures.contains(made_.labels[site]); };
-        return static_cast<std::size_t>(
-            std::count_if(part.sites().begin(), part.sites().end(), is_member)
-        );
-    }
-
-    // Labels that stood in the part before.
-    void put(const GraphPart& part, std::span<const Label> labels) {
-        connections_->enter(part.sites());
-        for (std::size_t i = 0; i < labels.size(); ++i) {
-            made_.labels[part.sites()[i]] = labels[i];
-        }
-        connections_->take_back(made_.labels);
-        connections_->enter(part.sites());
-    }
-
-    void report(const Box& block, const BlockResult& result) {
+    void report(std::uint32_t number, const Box& block, const BlockResult& result) {
         check(
             result.outcome != BlockOutcome::kImpossible,
             "a block of a consistent model was found impossible"
@@ -298,7 +289,7 @@ class Run {
         SearchTally& tally = made_.stats.blocks;
         ++(accepted ? tally.solved_by[static_cast<std::size_t>(result.solved_by)] : tally.reverted);
         tally.backtracks += result.backtracks;
-        observer_.on_block({index_, total_, block, accepted, result.attempts, tally, made_.labels});
+        observer_.on_block({number, total_, block, accepted, result.attempts, tally, made_.labels});
     }
 
     Result<Synthesis> finish(bool is_in_blocks) {
@@ -309,15 +300,8 @@ class Run {
                     " attempts at the whole at once; blocks succeed more often",
                 {}});
         }
-        for (std::size_t i = 0; i < growing_.size(); ++i) {
-            const std::uint32_t components = connections_->components(i);
-            if (components > problem_.connections[i].components) {
-                return tl::unexpected(Error{
-                    ErrorCode::kGaveUp,
-                    "what is to be connected was fixed apart and stayed in " +
-                        std::to_string(components) + " components",
-                    {}});
-            }
+        if (auto fault = growth_ ? growth_->find_fault() : std::nullopt) {
+            return tl::unexpected(std::move(*fault));
         }
         made_.stats.changed = changed_from(problem_.initial, made_.labels);
         return std::move(made_);
@@ -329,10 +313,9 @@ class Run {
     const std::stop_token& stop_;
     BlockBases<GraphTopology> bases_;
     BlockSearch<GraphPart> search_;
-    std::vector<LabelSet> growing_;  // by connection
-    std::unique_ptr<const Skeleton> skeleton_;
-    std::unique_ptr<Connections> connections_;  // null: nothing is asked to hang together
-    std::unique_ptr<const GrowthChooser> chooser_;
+    std::unique_ptr<Growth> growth_;  // null: nothing is asked to hang together
+    std::vector<Box> schedule_;
+    std::uint32_t attempts_ = 1;
     Synthesis made_;
     std::uint32_t index_ = 0;
     std::uint32_t total_ = 0;
@@ -346,9 +329,10 @@ Result<Synthesis> synthesise(
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from
+    const Checkpoint* from,
+    std::uint32_t threads
 ) {
-    return Run(problem, seed, observer, stop).make(*parameters.blocks, from);
+    return Run(problem, seed, observer, stop).make(*parameters.blocks, from, threads);
 }
 
 }  // namespace modelsynth::continuous

@@ -19,7 +19,9 @@ struct Synthesis {
 // A model in which everything around every vertex, edge and face stands so in the example
 // (Algorithm 4.1), made in blocks (4.5.6) or, with `blocks` a value without blocks, at once.
 // Reports as of the discrete solver, regions in cells of one spacing.
-// Ensures: equal arguments give equal labels and reports.
+// With several threads, blocks that do not touch are modified at the same time, unless something
+// has to hang together or be symmetric; the observer is called on this thread, as with one.
+// Ensures: equal arguments give equal labels and reports, on any number of threads.
 // Fails:   kGaveUp for the whole at once, kCancelled.
 [[nodiscard]] Result<Synthesis> synthesise(
     const Problem& problem,
@@ -27,7 +29,8 @@ struct Synthesis {
     std::uint64_t seed,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from = nullptr
+    const Checkpoint* from = nullptr,
+    std::uint32_t threads = 1
 );
 
 }  // namespace modelsynth::continuous

@@ -1,6 +1,7 @@
 #include "solver/continuous/warnings.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 
 namespace modelsynth::continuous {
@@ -39,6 +40,16 @@ std::vector<std::string> warnings_of(const Problem& problem) {
         ++without[figures.relevant(label)];
     }
     std::vector<std::string> warnings;
+    if (const Nudged* nudged = problem.reading->nudged()) {
+        char text[96];
+        std::snprintf(
+            text,
+            sizeof text,
+            "faces are turned by up to %.3g degrees, so that their planes meet",
+            nudged->largest_degrees
+        );
+        warnings.emplace_back(text);
+    }
     for (const auto& [families, count] : without) {
         warnings.push_back(without_place(count, figures.count(), families));
     }

@@ -11,7 +11,7 @@
 
 namespace modelsynth::discrete {
 
-struct ParallelBlocks {
+struct BlocksToModify {
     std::span<const Box> schedule;
     std::uint32_t first = 0;  // those before it are done
     std::uint32_t attempts = 1;
@@ -27,7 +27,7 @@ struct ParallelBlocks {
     Preparation& preparation,
     BlockSolver& own,
     std::uint64_t seed,
-    const ParallelBlocks& blocks,
+    const BlocksToModify& blocks,
     std::span<Label> model,
     const std::stop_token& stop,
     const std::function<void(const ModifiedBlock&)>& report

@@ -1,7 +1,7 @@
 #include "solver/examples/make_solids.h"
 
 #include "solver/continuous/scene.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/mesh/glb_writer.h"

@@ -1,7 +1,7 @@
 #include "solver/registry/model_spaces.h"
 
 #include "solver/continuous/scene.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/discrete/box_labels.h"
 #include "solver/discrete/scene.h"
 

@@ -1,11 +1,12 @@
 #include "solver/registry/task.h"
 
+#include "solver/continuous/decoration/placed_decorations.h"
 #include "solver/continuous/faults.h"
 #include "solver/continuous/problem_cache.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/scene.h"
 #include "solver/continuous/shapes/placed_shapes.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/continuous/warnings.h"
@@ -111,6 +112,24 @@ std::optional<Scene> pieces_scene(const Example& example) {
     return grid == nullptr ? std::nullopt : std::optional(discrete::make_piece_sheet(**grid));
 }
 
+Result<Example> example_for(const Example& example, const Parameters& parameters) {
+    const auto* solids = std::get_if<Solids>(&example);
+    if (solids == nullptr) {
+        return example;
+    }
+    const continuous::Parameters filled = continuous::fill_defaults(
+        std::get<continuous::Parameters>(parameters), (*solids)->example()
+    );
+    return continuous::ExampleReading::read_for(*solids, filled).map([](auto reading) -> Example {
+        return reading;
+    });
+}
+
+bool are_read_alike(const Example& one, const Example& other) {
+    const auto* solids = std::get_if<Solids>(&one);
+    return solids == nullptr || (*solids)->options() == std::get<Solids>(other)->options();
+}
+
 Parameters with_defaults(const Parameters& parameters, const Example& example) {
     return std::visit(
         Overloaded{
@@ -213,7 +232,8 @@ Result<Finished> run_continuous(
     Preparations& preparations,
     Observer& observer,
     const std::stop_token& stop,
-    const Checkpoint* from
+    const Checkpoint* from,
+    std::uint32_t threads
 ) {
     const auto& parameters = std::get<continuous::Parameters>(task.parameters);
     const auto& solids = std::get<Solids>(task.example);
@@ -229,17 +249,27 @@ Result<Finished> run_continuous(
     if (!problem) {
         return tl::unexpected(problem.error());
     }
-    auto made = continuous::synthesise(**problem, parameters, task.seed, observer, stop, from);
+    auto made =
+        continuous::synthesise(**problem, parameters, task.seed, observer, stop, from, threads);
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }
     const continuous::Surface surface = continuous::make_surface(**problem, made->labels);
     made->stats.polygons = surface.polygons.size();
     made->stats.warnings = continuous::warnings_of(**problem);
-    if (continuous::place_shapes(solids->example(), surface).are_too_many) {
+    const continuous::PlacedShapes shapes = continuous::place_shapes(solids->example(), surface);
+    if (shapes.are_too_many) {
         made->stats.warnings.emplace_back(
             "shapes would come to more than " + std::to_string(continuous::kShapeTrianglesMax) +
             " triangles, so that boxes stand in their places"
+        );
+    }
+    const auto normals = solids->topes().normals();
+    if (continuous::place_decorations(solids->example(), normals, surface, shapes).are_too_many) {
+        made->stats.warnings.emplace_back(
+            "decorations and shapes would come to more than " +
+            std::to_string(continuous::kShapeTrianglesMax) +
+            " triangles, so that there are no decorations"
         );
     }
     if (made->stats.changed == 0) {
@@ -260,7 +290,7 @@ Result<Finished> run(
 ) {
     return std::holds_alternative<DiscreteExample>(task.example)
                ? run_discrete(task, preparations, observer, stop, from, threads)
-               : run_continuous(task, preparations, observer, stop, from);
+               : run_continuous(task, preparations, observer, stop, from, threads);
 }
 
 Result<Analysis> analyse(const Example& example, const std::stop_token& stop) {

@@ -64,6 +64,14 @@ struct Task {
     std::shared_ptr<const Origin> origin = nullptr;  // null: made from nothing
 };
 
+// The example as a request with these parameters has it read: with turned variants, for one.
+// Equal requests get the same. Requires: defaults need not be filled in.
+// Fails: kTooLarge.
+[[nodiscard]] Result<Example> example_for(const Example& example, const Parameters& parameters);
+
+// Whether labels of one mean what those of the other do, read from one and the same example.
+[[nodiscard]] bool are_read_alike(const Example& one, const Example& other);
+
 // Where the whole is proved to be made in one pass, that is the default (thesis 3.3.7).
 [[nodiscard]] Parameters with_defaults(const Parameters& parameters, const Example& example);
 [[nodiscard]] std::vector<Fault> find_faults(const Example& example, const Parameters& parameters);

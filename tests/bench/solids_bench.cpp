@@ -8,7 +8,7 @@
 // one of 100 000 polygons, with the peak of memory, and how the work grows with planes and
 // directions.
 
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
@@ -56,6 +56,7 @@ constexpr std::array kWork = {
     Work{"spaceships", {46, 12, 46}, "4 164, 0.6 min"},
     Work{"roads", {150, 6, 150}, "6 888, 0.2 min"},
     Work{"plumbing", {32, 14, 32}, "7 422, 0.8 min"},
+    Work{"letters", {152, 12, 56}, "7 527, 3.5 min"},
     Work{"roller_coaster", {30, 12, 30}, "1 376, 1.8 min"},
 };
 

@@ -1,7 +1,7 @@
 // Printed expressions of figures, read back and evaluated in every tope.
 
 #include "solver/continuous/display/expressions.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/examples/all.h"
 #include "tests/support/formula.h"
 #include "tests/support/random_solids.h"

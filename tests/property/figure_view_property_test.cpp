@@ -3,7 +3,7 @@
 
 #include "solver/continuous/display/figure_drawing.h"
 #include "solver/continuous/display/figure_view.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/random_solids.h"
 #include "tests/support/well_formed.h"

@@ -1,10 +1,10 @@
 // Constraints of solids: random ones on random examples, and what one sees of the models.
 // MODELSYNTH_SOLID_PERCENT asks for a longer run.
 
-#include "solver/continuous/connections.h"
+#include "solver/continuous/constraints/connections.h"
 #include "solver/continuous/faults.h"
-#include "solver/continuous/skeleton.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/planes/skeleton.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"

@@ -1,7 +1,7 @@
 // What the reader finds in an example of solids, beside what the checker of models sees there.
 
 #include "solver/continuous/problem.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
 #include "tests/support/random_solids.h"

@@ -1,7 +1,9 @@
 // Models of solids, checked by what one sees of them.
 
+#include "solver/continuous/decoration/decoration_meshes.h"
+#include "solver/continuous/decoration/placed_decorations.h"
 #include "solver/continuous/scene.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
@@ -69,13 +71,24 @@ void expect_right(const SurfaceChecker& checker, const Reading& reading, const M
     EXPECT_EQ(text(checker.find_faults(make_scene(*reading, model.surface), model.surface)), "");
 }
 
+// The same example, whose models are no more than their polygons and shapes.
+Reading without_decorations(const Reading& reading) {
+    Example example = reading->example();
+    for (ObjectType& object : example.objects) {
+        object.decorations.clear();
+    }
+    return ExampleReading::make(std::move(example)).value();
+}
+
 class SolidsBuiltIn : public ::testing::TestWithParam<std::size_t> {
   protected:
     [[nodiscard]] static Reading reading() { return examples::built_in_solids()[GetParam()]; }
 };
 
 TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
-    const SurfaceChecker checker(reading()->example());
+    const Reading plain = without_decorations(reading());
+    const SurfaceChecker checker(plain->example());
+    const SurfaceChecker checker_of_decorations(reading()->example());
     std::size_t polygons = 0;
     for (std::uint64_t seed = 1; seed <= solid_case_count(20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -83,7 +96,9 @@ TEST_P(SolidsBuiltIn, MakeModelsInWhichAllStandsAsInTheExample) {
             return 8 + static_cast<double>(seed * step % 13) / 2;
         };
         const Model model = make_model(reading(), {extent(5), extent(3), extent(7)}, seed);
-        expect_right(checker, reading(), model);
+        expect_right(checker, plain, model);
+        const Scene decorated = make_scene(*reading(), model.surface);
+        EXPECT_EQ(text(checker_of_decorations.find_faults(decorated, model.surface)), "");
         polygons += model.surface.polygons.size();
     }
     EXPECT_GT(polygons, solid_case_count(20) * 10U);
@@ -102,10 +117,56 @@ std::string name_of(const ::testing::TestParamInfo<SolidsKind>& tested) {
     return kNames.at(static_cast<std::size_t>(tested.param));
 }
 
+// Whatever meets at an edge: sweeps are closed, and none of their faces is inside out.
+std::size_t expect_closed_sweeps(const Reading& reading, const Surface& surface) {
+    Example example = reading->example();
+    for (ObjectType& object : example.objects) {
+        for (const Turn turn : {Turn::kConvex, Turn::kConcave}) {
+            for (const FaceKind kind : {FaceKind::kAny, FaceKind::kSlope, FaceKind::kSide}) {
+                object.decorations.push_back(EdgeDecoration{
+                    {FaceChoice{FaceKind::kAny}, FaceChoice{kind}},
+                    turn,
+                    {{-0.1, -0.2}, {0.15, -0.1}, {0.1, 0.2}}});
+            }
+        }
+    }
+    const PlacedDecorations placed = place_decorations(
+        example, reading->topes().normals(), surface, place_shapes(example, surface)
+    );
+    EXPECT_FALSE(placed.are_too_many);
+    std::map<std::array<double, 6>, int> balance;
+    std::size_t mitres = 0;
+    for (const Sweep& sweep : placed.sweeps) {
+        const SweptMesh mesh = mesh_of(sweep);
+        mitres += sweep.ends[0].is_mitred ? 1U : 0U;
+        const Point along = sweep.ends[1].at - sweep.ends[0].at;
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            const Face& face = mesh.faces[f];
+            for (std::size_t i = 0; i < face.size(); ++i) {
+                const Point& a = mesh.corners[face[i]];
+                const Point& b = mesh.corners[face[(i + 1) % face.size()]];
+                ++balance[{a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}];
+                --balance[{b.x(), b.y(), b.z(), a.x(), a.y(), a.z()}];
+            }
+            // A side runs forth along its edge and back.
+            if (f < 3) {
+                const Point forth = mesh.corners[face[2]] - mesh.corners[face[1]];
+                EXPECT_GT(forth.dot(along), 0);
+                EXPECT_LT(forth.cross(along).norm(), 1e-6 * along.squaredNorm());
+            }
+        }
+    }
+    for (const auto& [edge, sum] : balance) {
+        EXPECT_EQ(sum, 0);
+    }
+    return mitres;
+}
+
 class RandomSolids : public ::testing::TestWithParam<SolidsKind> {};
 
 TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
     std::size_t models = 0;
+    std::size_t mitres = 0;
     for (std::uint32_t seed = 0; seed < solid_case_count(40); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Example example = make_random_solids(GetParam(), seed);
@@ -129,13 +190,14 @@ TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
             RecordingObserver observer;
             const auto made = synthesise(*problem, parameters, run, observer, {});
             ASSERT_TRUE(made) << made.error().message;
-            expect_right(
-                checker, *reading, {box_of(*problem), make_surface(*problem, made->labels)}
-            );
+            const Surface surface = make_surface(*problem, made->labels);
+            expect_right(checker, *reading, {box_of(*problem), surface});
+            mitres += expect_closed_sweeps(*reading, surface);
             ++models;
         }
     }
     EXPECT_GT(models, solid_case_count(20));
+    EXPECT_GT(mitres, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(

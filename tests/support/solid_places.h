@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "tests/support/polygon_set.h"
 
 #include <Eigen/Geometry>

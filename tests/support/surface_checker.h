@@ -1,9 +1,10 @@
 #pragma once
 
 #include "solver/continuous/example.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/mesh/scene.h"
 #include "tests/support/cone_cells.h"
+#include "tests/support/surface_laws.h"
 
 #include <Eigen/Geometry>
 
@@ -30,10 +31,13 @@ class SurfaceChecker {
     // ground's where the box ends; each object's border is closed, encloses space once and leaves
     // it to no other; polygons are as large as they go, and meet only at corners; and around every
     // point everything stands so in the example. Of more than `points_max` points some are taken.
+    // `cuts`: at which sides of the box objects may end that go on beyond; very near to those
+    // nothing is looked at.
     [[nodiscard]] ModelFaults find_faults(
         const continuous::Surface& surface,
         const Eigen::AlignedBox3d& box,
-        std::size_t points_max = 20'000
+        std::size_t points_max = 20'000,
+        const CutSides& cuts = {}
     ) const;
 
     // A scene made from the surface: of each material the triangles are closed, cover as much as

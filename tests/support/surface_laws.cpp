@@ -75,15 +75,19 @@ bool is_simple(const SpacePolygon& polygon) {
     return result;
 }
 
-// Whether it is a side or the bottom of the ground.
-bool is_end_of_ground(
-    const SpacePolygon& polygon, const continuous::Example& example, const Eigen::AlignedBox3d& box
+// Whether the model's box ends an object there: the ground anywhere, others at sides that cut.
+bool is_end_of_model(
+    const SpacePolygon& polygon,
+    const continuous::Example& example,
+    const Eigen::AlignedBox3d& box,
+    const CutSides& cuts
 ) {
-    if (!example.ground || polygon.solid != *example.ground) {
-        return false;
-    }
+    const bool is_ground = example.ground && polygon.solid == *example.ground;
     for (int axis = 0; axis < 3; ++axis) {
         for (const bool is_max : {false, true}) {
+            if (!is_ground && !cuts[static_cast<std::size_t>(2 * axis + int{is_max})]) {
+                continue;
+            }
             const double end = is_max ? box.max()[axis] : box.min()[axis];
             const bool is_there = std::abs(polygon.box.min()[axis] - end) < kFlat &&
                                   std::abs(polygon.box.max()[axis] - end) < kFlat;
@@ -141,6 +145,7 @@ void find_false_polygons(
     const continuous::Example& example,
     const ConeCells& cells,
     const PolygonSet& solids,
+    const CutSides& cuts,
     FaultList& faults
 ) {
     Eigen::AlignedBox3d reach = solids.frame().clip;
@@ -154,7 +159,7 @@ void find_false_polygons(
             faults.add(name(p) + " has loops that cross, or holes outside of it");
         } else if (!reach.contains(polygon.box)) {
             faults.add(name(p) + " leaves the box");
-        } else if (!cells.find(polygon.normal) && !is_end_of_ground(polygon, example, solids.frame().clip)) {
+        } else if (!cells.find(polygon.normal) && !is_end_of_model(polygon, example, solids.frame().clip, cuts)) {
             faults.add(name(p) + " looks where no face of the example does");
         }
     }
@@ -299,7 +304,20 @@ void check_scene(
     // Shapes, which stand in for boxes, are smooth, and closed; how large they are is not known
     // here.
     std::set<std::uint32_t> of_shapes;
+    // Decorations are closed, too, and are there besides the polygons; other tests know where.
+    std::set<std::uint32_t> of_decorations;
+    std::set<std::uint32_t> of_meshes;  // which are smooth, too
     for (const continuous::ObjectType& object : example.objects) {
+        for (const continuous::Decoration& decoration : object.decorations) {
+            const auto look =
+                std::visit([](const auto& one) { return std::size_t{one.look}; }, decoration);
+            const std::uint32_t material =
+                look == continuous::kEmpty ? object.material : example.objects[look - 1].material;
+            of_decorations.insert(material);
+            if (std::holds_alternative<continuous::CornerDecoration>(decoration)) {
+                of_meshes.insert(material);
+            }
+        }
         if (object.shape != nullptr) {
             of_shapes.insert(object.material);
         }
@@ -314,15 +332,23 @@ void check_scene(
     for (const Mesh& mesh : scene.kit->meshes) {
         for (const Primitive& part : mesh.primitives) {
             const std::string what = "material " + std::to_string(part.material);
-            const double least_cosine = of_shapes.contains(part.material) ? 0.5 : 1 - 1e-4;
+            const bool is_smooth =
+                of_shapes.contains(part.material) || of_meshes.contains(part.material);
+            const double least_cosine = is_smooth ? 0.5 : 1 - 1e-4;
             const Totals totals = check_primitive(part, what, least_cosine, faults);
             found[part.material].area += totals.area;
             found[part.material].volume += totals.volume;
         }
     }
     for (const auto& [material, totals] : expected) {
+        if (of_decorations.contains(material)) {
+            if (found[material].area < totals.area * (1 - 1e-4) && !of_shapes.contains(material)) {
+                faults.add("polygons of material " + std::to_string(material) + " are missing");
+            }
+            continue;
+        }
         if (of_shapes.contains(material)) {
-            if (found[material].volume <= 0 || found[material].volume > totals.volume) {
+            if (found[material].volume <= 0 || found[material].volume > totals.volume * (1 + 1e-4)) {
                 faults.add("shapes of material " + std::to_string(material) + " leave their boxes");
             }
             continue;

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "solver/continuous/example.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/mesh/scene.h"
 #include "tests/support/cone_cells.h"
 #include "tests/support/polygon_set.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -41,10 +42,15 @@ void find_invalid_numbers(
     const continuous::Example& example, const continuous::Surface& surface, FaultList& faults
 );
 
+// By side of a model's box, 2 * axis, + 1 where the coordinate is largest: whether it cuts objects
+// that go on beyond.
+using CutSides = std::array<bool, 6>;
+
 void find_false_polygons(
     const continuous::Example& example,
     const ConeCells& cells,
     const PolygonSet& solids,
+    const CutSides& cuts,
     FaultList& faults
 );
 

@@ -1,7 +1,7 @@
 #include "solver/continuous/check/self_crossing.h"
 
 #include "solver/continuous/check/flat.h"
-#include "solver/continuous/families.h"
+#include "solver/continuous/reading/families.h"
 #include "solver/continuous/triangulation/triangulation.h"
 
 #include <Eigen/Geometry>

@@ -2,7 +2,7 @@
 
 #include "solver/continuous/check/face_crossings.h"
 #include "solver/continuous/check/self_crossing.h"
-#include "solver/continuous/families.h"
+#include "solver/continuous/reading/families.h"
 
 #include <Eigen/Geometry>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "solver/continuous/display/boolean_expression.h"
-#include "solver/continuous/figures.h"
-#include "solver/continuous/topes.h"
+#include "solver/continuous/reading/figures.h"
+#include "solver/continuous/reading/topes.h"
 
 #include <cstddef>
 #include <cstdint>

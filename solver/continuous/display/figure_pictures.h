@@ -5,7 +5,7 @@
 #include "solver/continuous/display/expressions.h"
 #include "solver/continuous/display/figure_palette.h"
 #include "solver/continuous/display/figure_view.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 
 #include <cstddef>
 #include <string>

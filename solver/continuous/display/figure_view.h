@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/continuous/figures.h"
-#include "solver/continuous/topes.h"
+#include "solver/continuous/reading/figures.h"
+#include "solver/continuous/reading/topes.h"
 
 #include <array>
 #include <cstdint>

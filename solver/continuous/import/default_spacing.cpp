@@ -1,11 +1,12 @@
 #include "solver/continuous/import/default_spacing.h"
 
-#include "solver/continuous/families.h"
+#include "solver/continuous/reading/families.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -18,7 +19,7 @@ constexpr double kThinnest = 1e-3;
 }  // namespace
 
 double default_spacing(const Example& example) {
-    const auto families = find_families(example);
+    const auto families = find_families(std::span(&example, 1));
     if (!families) {
         return 1;  // the example is refused for that when it is read
     }

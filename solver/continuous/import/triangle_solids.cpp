@@ -1,8 +1,8 @@
 #include "solver/continuous/import/triangle_solids.h"
 
-#include "solver/continuous/families.h"
 #include "solver/continuous/import/face_merging.h"
-#include "solver/continuous/solids.h"
+#include "solver/continuous/reading/families.h"
+#include "solver/continuous/reading/solids.h"
 
 #include <Eigen/Geometry>
 

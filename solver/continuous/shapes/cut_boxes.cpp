@@ -1,6 +1,6 @@
 #include "solver/continuous/shapes/cut_boxes.h"
 
-#include "solver/continuous/families.h"
+#include "solver/continuous/reading/families.h"
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,7 @@
 #include "solver/continuous/shapes/placed_shapes.h"
 
 #include "solver/continuous/shapes/cut_boxes.h"
+#include "solver/continuous/surface/sides.h"
 
 #include <Eigen/Geometry>
 
@@ -11,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -33,17 +35,10 @@ Point area_of(const Surface& surface, const Loop& loop) {
     return area;
 }
 
-// A side of a polygon, and how that polygon lies at it.
-struct Side {
-    std::size_t polygon = 0;
-    Point inwards = Point::Zero();   // in the polygon's plane, across the side
-    Point outwards = Point::Zero();  // normal
-};
-
 // The parts of an object's surface that enclose one piece of it each.
 class Pieces {
   public:
-    Pieces(const Surface& surface, ObjectId object) : surface_(surface) {
+    Pieces(const Surface& surface, std::span<const Point> normals, ObjectId object) {
         for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
             if (surface.polygons[p].object == object) {
                 polygons_.push_back(p);
@@ -51,7 +46,7 @@ class Pieces {
         }
         root_.resize(surface.polygons.size());
         std::iota(root_.begin(), root_.end(), std::size_t{0});
-        join();
+        join(sides_of(surface, normals, object));
     }
 
     // Polygons by piece, in the order of the first ones.
@@ -68,28 +63,10 @@ class Pieces {
     }
 
   private:
-    using Ends = std::pair<std::uint32_t, std::uint32_t>;
-
-    void join() {
-        std::map<Ends, std::vector<Side>> sides;
-        for (const std::size_t p : polygons_) {
-            const SurfacePolygon& polygon = surface_.polygons[p];
-            const Point outwards = area_of(surface_, polygon.loops.front()).normalized();
-            for (const Loop& loop : polygon.loops) {
-                for (std::size_t i = 0; i < loop.size(); ++i) {
-                    const Ends ends = {loop[i], loop[(i + 1) % loop.size()]};
-                    const Point along =
-                        (surface_.points[ends.second] - surface_.points[ends.first]).normalized();
-                    sides[ends].push_back({p, outwards.cross(along), outwards});
-                }
-            }
-        }
-        for (const auto& [ends, here] : sides) {
-            const auto there = sides.find({ends.second, ends.first});
-            for (const Side& side : here) {
-                if (there != sides.end()) {
-                    root_[root(side.polygon)] = root(across(side, there->second).polygon);
-                }
+    void join(const std::vector<Side>& sides) {
+        for (const Side& side : sides) {
+            if (side.twin != kNoSide) {
+                root_[root(side.polygon)] = root(sides[side.twin].polygon);
             }
         }
         // The first polygon of a piece stands for it.
@@ -103,18 +80,6 @@ class Pieces {
         }
     }
 
-    // Of several that meet at a side, the one that one comes to first through the inside.
-    static const Side& across(const Side& side, const std::vector<Side>& others) {
-        const auto turn_to = [&side](const Side& other) {
-            const double turn =
-                std::atan2(-other.inwards.dot(side.outwards), other.inwards.dot(side.inwards));
-            return turn > 1e-9 ? turn : turn + 2 * std::numbers::pi;
-        };
-        return *std::min_element(others.begin(), others.end(), [&](const Side& a, const Side& b) {
-            return turn_to(a) < turn_to(b);
-        });
-    }
-
     std::size_t root(std::size_t polygon) {
         while (root_[polygon] != polygon) {
             root_[polygon] = root_[root_[polygon]];
@@ -123,7 +88,6 @@ class Pieces {
         return polygon;
     }
 
-    const Surface& surface_;
     std::vector<std::size_t> polygons_;  // of the object
     std::vector<std::size_t> root_;      // by polygon
     std::map<std::size_t, std::size_t> first_;
@@ -136,6 +100,9 @@ std::optional<Box3> box_of(
     Box3 box;
     double volume = 0;
     for (const std::size_t p : piece) {
+        if (surface.polygons[p].family == kNoFamily) {
+            return std::nullopt;  // the model's border cut it
+        }
         for (const Loop& loop : surface.polygons[p].loops) {
             for (const std::uint32_t point : loop) {
                 box.extend(surface.points[point]);
@@ -146,14 +113,6 @@ std::optional<Box3> box_of(
     const bool is_whole =
         std::abs(volume - share * box.volume()) <= kTolerance * std::abs(box.volume());
     return is_whole && box.volume() > 0 ? std::optional(box) : std::nullopt;
-}
-
-std::size_t triangle_count(const Shape& shape) {
-    std::size_t count = 0;
-    for (const Face& face : shape.faces) {
-        count += face.size() - 2;
-    }
-    return count;
 }
 
 Point face_normal(const Shape& shape, const Face& face) {
@@ -170,7 +129,8 @@ Point face_normal(const Shape& shape, const Face& face) {
 PlacedShapes place_shapes(const Example& example, const Surface& surface) {
     PlacedShapes placed;
     placed.is_replaced.assign(surface.polygons.size(), 0);
-    std::size_t triangles = 0;
+    std::size_t& triangles = placed.triangle_count;
+    const std::vector<Point> normals = normals_of(surface);
     for (std::size_t i = 0; i < example.objects.size(); ++i) {
         const ObjectType& type = example.objects[i];
         const auto object = static_cast<ObjectId>(i + 1);
@@ -182,7 +142,7 @@ PlacedShapes place_shapes(const Example& example, const Surface& surface) {
             const Eigen::Vector3f middle = box.center().cast<float>();
             return std::tuple(middle.x(), middle.y(), middle.z());
         };
-        for (const std::vector<std::size_t>& piece : Pieces(surface, object).all()) {
+        for (const std::vector<std::size_t>& piece : Pieces(surface, normals, object).all()) {
             if (const auto box = box_of(surface, piece, share_of_box(example, object))) {
                 placed.shapes.push_back({object, {box->min(), box->max()}});
                 boxes.insert(key_of(*box));
@@ -197,7 +157,7 @@ PlacedShapes place_shapes(const Example& example, const Surface& surface) {
                 continue;
             }
             const auto rest = static_cast<ObjectId>(r + 1);
-            for (const std::vector<std::size_t>& piece : Pieces(surface, rest).all()) {
+            for (const std::vector<std::size_t>& piece : Pieces(surface, normals, rest).all()) {
                 const auto box = box_of(surface, piece, share_of_box(example, rest));
                 if (box && boxes.contains(key_of(*box))) {
                     for (const std::size_t polygon : piece) {
@@ -208,9 +168,17 @@ PlacedShapes place_shapes(const Example& example, const Surface& surface) {
         }
     }
     if (triangles > kShapeTrianglesMax) {
-        return {{}, std::vector<std::uint8_t>(surface.polygons.size()), true};
+        return {{}, std::vector<std::uint8_t>(surface.polygons.size()), 0, true};
     }
     return placed;
+}
+
+std::size_t triangle_count(const Shape& shape) {
+    std::size_t count = 0;
+    for (const Face& face : shape.faces) {
+        count += face.size() - 2;
+    }
+    return count;
 }
 
 std::vector<ShapeCorner> triangles_of(const Shape& shape, const Bounds& box) {
@@ -249,6 +217,14 @@ std::vector<ShapeCorner> triangles_of(const Shape& shape, const Bounds& box) {
         }
     }
     return triangles;
+}
+
+std::vector<ShapeCorner> triangles_of(const Shape& shape) {
+    Box3 own;
+    for (const Point& corner : shape.corners) {
+        own.extend(corner);
+    }
+    return triangles_of(shape, {own.min(), own.max()});
 }
 
 }  // namespace modelsynth::continuous

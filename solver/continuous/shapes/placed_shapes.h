@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/continuous/example.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace modelsynth::continuous {
 
-// So many triangles of shapes at most in a model; beyond that all of them are left boxes.
+// So many triangles of shapes at most in a model; beyond that all of them are left boxes. What is
+// left of them is for decorations.
 inline constexpr std::size_t kShapeTrianglesMax = 1'000'000;
 
 struct PlacedShape {
@@ -21,6 +22,7 @@ struct PlacedShape {
 struct PlacedShapes {
     std::vector<PlacedShape> shapes;        // in the order of their first polygons
     std::vector<std::uint8_t> is_replaced;  // by polygon
+    std::size_t triangle_count = 0;         // of all of them
     bool are_too_many = false;
 };
 
@@ -35,7 +37,12 @@ struct ShapeCorner {
     Point normal;  // unit length, smooth or not
 };
 
+[[nodiscard]] std::size_t triangle_count(const Shape& shape);
+
 // The triangles of a shape, three corners after each other, as they lie over a box.
 [[nodiscard]] std::vector<ShapeCorner> triangles_of(const Shape& shape, const Bounds& box);
+
+// Those of a shape as it is.
+[[nodiscard]] std::vector<ShapeCorner> triangles_of(const Shape& shape);
 
 }  // namespace modelsynth::continuous

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "solver/continuous/constraints.h"
+#include "solver/continuous/constraints/constraints.h"
 #include "solver/continuous/example.h"
 #include "solver/continuous/parameters.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 
 #include <utility>
 #include <vector>

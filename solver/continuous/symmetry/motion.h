@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/continuous/constraints.h"
-#include "solver/continuous/families.h"
+#include "solver/continuous/constraints/constraints.h"
+#include "solver/continuous/reading/families.h"
 
 #include <Eigen/Core>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/reading/topes.h"
 #include "solver/continuous/symmetry/motion.h"
-#include "solver/continuous/topes.h"
 
 #include <Eigen/Core>
 

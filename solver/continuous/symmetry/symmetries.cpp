@@ -1,8 +1,8 @@
 #include "solver/continuous/symmetry/symmetries.h"
 
+#include "solver/continuous/planes/vertex_finder.h"
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/symmetry/motion.h"
-#include "solver/continuous/vertex_finder.h"
 #include "solver/core/label_images.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/constraints.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/constraints/constraints.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/core/graph_topology.h"
 #include "solver/core/relations.h"
 #include "solver/core/site_domains.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/continuous/arrangement.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/planes/arrangement.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/motion.h"
 
 #include <array>

@@ -1,4 +1,5 @@
 #include "solver/examples/solids/built_in_solids.h"
+#include "solver/examples/solids/ornaments.h"
 #include "solver/examples/solids/shapes.h"
 
 namespace modelsynth::examples {
@@ -52,6 +53,11 @@ continuous::Example make_buildings() {
         {"quoin a", 2, 0.5},
         {"quoin b", 2, 0.5}};
     example.ground = kPaving;
+    // Tiles on hips and ridges, and a finial wherever a roof comes to a point.
+    example.objects[kRoof - 1].decorations = {
+        moulding(kSlope, kSlope, bar(0.06, 0.06), kCornice),
+        continuous::CornerDecoration{
+            {kSlope, kSlope, kSlope}, continuous::Turn::kConvex, finial(0.6), false, kCornice}};
     Blocks blocks;
     const auto building = [&](const Plan& p, double y0, double y1) {
         add_walls(blocks, p, y0, y1 - 1);

@@ -20,6 +20,7 @@ struct Entry {
 constexpr std::array kEntries = {
     Entry{"houses", make_houses},
     Entry{"skyscrapers", make_skyscrapers},
+    Entry{"letters", make_letters},
     Entry{"domes", make_domes},
     Entry{"buildings", make_buildings},
     Entry{"pentagons", make_pentagons},

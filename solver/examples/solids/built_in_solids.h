@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 
 #include <memory>
 #include <string_view>
@@ -23,6 +23,7 @@ namespace modelsynth::examples {
 [[nodiscard]] continuous::Example make_domes();
 [[nodiscard]] continuous::Example make_fractals();
 [[nodiscard]] continuous::Example make_houses();
+[[nodiscard]] continuous::Example make_letters();
 [[nodiscard]] continuous::Example make_oil_platform();
 [[nodiscard]] continuous::Example make_pentagons();
 [[nodiscard]] continuous::Example make_plumbing();

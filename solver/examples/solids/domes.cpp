@@ -1,6 +1,7 @@
 #include "solver/continuous/shapes/cut_boxes.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/lathe.h"
+#include "solver/examples/solids/ornaments.h"
 #include "solver/examples/solids/shapes.h"
 
 #include <array>
@@ -96,6 +97,14 @@ Example make_domes() {
         {"dome", kTurquoise, 1, lathe(dome_outline(), kSegments, {true, true, true})},
         {"tower", kBrick, 1, lathe(kTowerOutline, kSegments, {true, false, true})}};
     example.ground = kSand;
+    // A moulding round flat roofs, with a pinnacle at each of their corners.
+    example.objects[kCornice - 1].decorations = {
+        moulding(
+            kUp, kSide, {{-0.3, -0.1}, {0.15, -0.1}, {0.15, 0.2}, {0, 0.2}, {-0.3, 0.05}}, kCornice
+        ),
+        continuous::CornerDecoration{
+            {kUp, kSide, kSide}, continuous::Turn::kConvex, finial(1), false, kTerrace}};
+    example.objects[kTerrace - 1].decorations = {moulding(kUp, kSide, bar(0.06, 0.3), kQuoinA)};
 
     Blocks halls;
     // A hall under one large dome, with a tower at two corners of its terrace.

@@ -1,4 +1,5 @@
 #include "solver/examples/solids/built_in_solids.h"
+#include "solver/examples/solids/ornaments.h"
 #include "solver/examples/solids/shapes.h"
 
 #include <vector>
@@ -83,6 +84,18 @@ void add_roof(Example& example, const Wing& wing, ObjectId object, double inset)
     );
 }
 
+// Ridges and the verges of gables, posts at the corners of upper storeys, and rims of pots.
+void add_woodwork(Example& example) {
+    example.objects[kRoof - 1].decorations = {
+        moulding(kSlope, kSlope, bar(0.08, 0.25), kRoof),
+        moulding(kSlope, kSide, {{0.06, -0.1}, {0.06, 0.22}, {-0.22, 0.22}, {-0.22, -0.1}}, kDoor)};
+    for (const ObjectId storey : {kSill, kPlaster}) {
+        example.objects[storey - 1].decorations = {moulding(kSide, kSide, bar(0.05, 0.22), kDoor)};
+    }
+    example.objects[kPot - 1].decorations = {
+        moulding(kUp, kSide, {{0.1, -0.2}, {0.1, 0.1}, {-0.15, 0.1}, {-0.15, -0.2}}, kChimney)};
+}
+
 }  // namespace
 
 // Gabled wings of one and two storeys that meet at right angles: from these come T-shaped, L-shaped
@@ -114,6 +127,7 @@ continuous::Example make_houses() {
         {"pot", 5},
         {"corner a", 1, 0.6},
         {"corner b", 1, 0.6}};
+    add_woodwork(example);
     example.ground = kGrass;
     const std::vector<Wing> wings = {// A cross of two storeys.
                                      {6, 0, 10, 16, 2, Ridge::kAlongZ},

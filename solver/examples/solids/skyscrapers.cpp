@@ -1,8 +1,11 @@
 #include "solver/examples/solids/built_in_solids.h"
+#include "solver/examples/solids/ornaments.h"
 #include "solver/examples/solids/shapes.h"
 
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace modelsynth::examples {
 
@@ -105,6 +108,27 @@ void add_corner_objects(Example& example, const std::string& name, std::uint32_t
     }
 }
 
+// Roofs and terraces end in parapets, those of stone in cornices with an obelisk at each corner.
+void add_parapets(Example& example) {
+    const std::vector<continuous::ProfilePoint> parapet = {
+        {-0.1, 0.06}, {-0.1, -0.2}, {0.3, -0.2}, {0.3, 0.06}};
+    const std::vector<continuous::ProfilePoint> cornice = {
+        {-0.45, -0.1}, {0.12, -0.1}, {0.12, 0.32}, {-0.05, 0.32}, {-0.45, 0.06}};
+    for (const ObjectId flat : {kSlab, kPlinth}) {
+        example.objects[flat - 1].decorations = {moulding(kUp, kSide, parapet, kSlab)};
+    }
+    example.objects[kCrown - 1].decorations = {moulding(kUp, kSide, parapet, kCrown)};
+    const continuous::Polyhedron obelisk =
+        pyramid(kCap, {{-0.14, -0.14}, {0.14, -0.14}, {0.14, 0.14}, {-0.14, 0.14}}, 0, {0, 0.8, 0});
+    example.objects[kCap - 1].decorations = {
+        moulding(kUp, kSide, cornice, kCap),
+        continuous::CornerDecoration{
+            {kUp, kSide, kSide},
+            continuous::Turn::kConvex,
+            std::make_shared<continuous::Shape>(continuous::Shape{obelisk.corners, obelisk.faces}
+            )}};
+}
+
 }  // namespace
 
 // Three ways to build high: stone with piers at the corners, ribbons of windows between slabs, and
@@ -135,6 +159,7 @@ continuous::Example make_skyscrapers() {
         {"plinth", 3}};
     add_corner_objects(example, "pier", 2);
     add_corner_objects(example, "foot", 3);
+    add_parapets(example);
     example.ground = kStreet;
     add_stone(example, {0, 0, 8, 8}, 0, 2);
     add_stone(example, {0, 0, 4, 4}, 3, 6);

@@ -3,7 +3,7 @@
 #include "proto/base64.h"
 #include "proto/example_codec.h"
 #include "proto/job_request.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/mesh/glb_writer.h"
 
 #include <gtest/gtest.h>

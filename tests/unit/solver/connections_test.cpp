@@ -1,6 +1,6 @@
 // How many components connected objects come in, counted while parts are made anew.
 
-#include "solver/continuous/connections.h"
+#include "solver/continuous/constraints/connections.h"
 
 #include "solver/continuous/problem.h"
 #include "solver/examples/solids/shapes.h"

@@ -1,10 +1,10 @@
 // Continuous synthesis: what is read of an example, where planes lie, and what is made.
 
 #include "solver/continuous/faults.h"
+#include "solver/continuous/planes/spacing.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/reading.h"
-#include "solver/continuous/spacing.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/reading/reading.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/shapes.h"
 

@@ -1,6 +1,6 @@
 // Where a region is.
 
-#include "solver/continuous/coverage.h"
+#include "solver/continuous/constraints/coverage.h"
 
 #include <gtest/gtest.h>
 

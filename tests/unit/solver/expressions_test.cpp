@@ -2,7 +2,7 @@
 
 #include "solver/continuous/display/expressions.h"
 
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/examples/solids/shapes.h"
 #include "tests/support/formula.h"
 

@@ -2,9 +2,9 @@
 
 #include "solver/continuous/check/flat.h"
 #include "solver/continuous/check/solid_check.h"
-#include "solver/continuous/families.h"
 #include "solver/continuous/import/default_spacing.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/families.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/triangulation/triangulation.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
@@ -470,7 +470,7 @@ TEST(MeshImport, ToleratesTheNoiseOfSinglePrecision) {
     ASSERT_EQ(example->polyhedra.size(), 2U);
     EXPECT_EQ(example->polyhedra[0].faces.size(), 8U);
     EXPECT_EQ(example->polyhedra[1].faces.size(), 6U);
-    const auto families = find_families(*example);
+    const auto families = find_families(std::span(&*example, 1));
     ASSERT_TRUE(families);
     EXPECT_EQ(families->normals.size(), 3U);
     EXPECT_NEAR(example->spacing, 1, 1e-5);

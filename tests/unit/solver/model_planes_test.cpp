@@ -1,10 +1,10 @@
 // Planes of a continuous model by family: how far apart, or one by one.
 
-#include "solver/continuous/model_planes.h"
+#include "solver/continuous/planes/model_planes.h"
 
 #include "solver/continuous/faults.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/continuous/warnings.h"
 #include "solver/examples/solids/shapes.h"

@@ -3,8 +3,8 @@
 #include "solver/examples/solids/shapes.h"
 
 #include "solver/continuous/check/solid_check.h"
-#include "solver/continuous/families.h"
 #include "solver/continuous/problem.h"
+#include "solver/continuous/reading/families.h"
 #include "solver/continuous/scene.h"
 #include "solver/continuous/shapes/cut_boxes.h"
 #include "solver/continuous/shapes/placed_shapes.h"

@@ -1,6 +1,6 @@
 #include "solver/continuous/check/solid_check.h"
 
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
 

@@ -1,8 +1,8 @@
 // Constraints of solids, looked at in the polygons of what is made.
 
 #include "solver/continuous/problem.h"
-#include "solver/continuous/reading.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/reading/reading.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/core/weight_tables.h"
 #include "solver/examples/solids/built_in_solids.h"

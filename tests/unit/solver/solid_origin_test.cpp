@@ -3,7 +3,7 @@
 #include "solver/continuous/faults.h"
 #include "solver/continuous/origin.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "tests/support/examples.h"

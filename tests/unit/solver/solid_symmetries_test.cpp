@@ -2,8 +2,8 @@
 
 #include "solver/continuous/faults.h"
 #include "solver/continuous/problem.h"
-#include "solver/continuous/reading.h"
-#include "solver/continuous/surface.h"
+#include "solver/continuous/reading/reading.h"
+#include "solver/continuous/surface/surface.h"
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/continuous/warnings.h"

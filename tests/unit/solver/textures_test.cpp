@@ -1,7 +1,7 @@
 // Textures of examples of solids, from a file to a file.
 
 #include "solver/continuous/import/mesh_import.h"
-#include "solver/continuous/reading.h"
+#include "solver/continuous/reading/reading.h"
 #include "solver/continuous/scene.h"
 #include "solver/examples/solids/shapes.h"
 #include "solver/mesh/glb_scene.h"
