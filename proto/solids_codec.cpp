@@ -7,6 +7,7 @@
 #include "proto/shape_codec.h"
 #include "proto/solid_constraint_codec.h"
 #include "solver/continuous/check/solid_check.h"
+#include "solver/continuous/faults.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/mesh_import.h"
 #include "solver/continuous/shapes/cut_boxes.h"
@@ -248,7 +249,7 @@ class SolidsReader {
             }
         }
         if (const auto constraints = reader_.optional("constraints")) {
-            read_constraints(*constraints);
+            example_.constraints = read_solid_constraints(*constraints, limits_);
         }
         if (const auto connected = reader_.optional("connected")) {
             for (const Value& value : connected->array(0, 256).value_or(NoValues())) {
@@ -256,20 +257,6 @@ class SolidsReader {
                 for (const Value& object :
                      value.array(1, continuous::kObjectTypesMax).value_or(NoValues())) {
                     together.push_back(object_named(object));
-                }
-            }
-        }
-    }
-
-    void read_constraints(const Value& value) {
-        example_.constraints = read_solid_constraints(value, limits_);
-        for (const continuous::Constraint& constraint : example_.constraints) {
-            for (const std::string& name : constraint.objects) {
-                const bool is_known =
-                    continuous::find_object(example_, name) != continuous::kEmpty ||
-                    (continuous::may_name_empty(constraint.rule) && name == continuous::kEmptyName);
-                if (!is_known) {
-                    value.fault("the example has no object \"" + name + "\"");
                 }
             }
         }
@@ -304,6 +291,22 @@ class SolidsReader {
     bool is_size_given_ = false;
     bool is_spacing_given_ = false;
 };
+
+// False when its models could not keep to them. They come first in those of its models.
+bool check_constraints(const ExampleReading& reading, const Value& value) {
+    const std::size_t count = reading.example().constraints.size();
+    if (count == 0) {
+        return true;
+    }
+    continuous::Parameters usual = continuous::fill_defaults({}, reading.example());
+    usual.constraints->resize(count);
+    std::vector<Fault> faults = continuous::find_faults(reading, usual);
+    std::erase_if(faults, [](const Fault& fault) {
+        return !fault.pointer.starts_with("/constraints/");
+    });
+    value.faults().add_all(value.pointer(), faults);
+    return faults.empty();
+}
 
 // Without their textures.
 OrderedJson write_objects(const continuous::Example& example) {
@@ -341,6 +344,9 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
             value.fault(reading.error().message, reading.error().code == ErrorCode::kTooLarge);
         }
         value.faults().add_all(value.pointer(), reading.error().faults);
+        return nullptr;
+    }
+    if (!check_constraints(**reading, value)) {
         return nullptr;
     }
     return std::move(*reading);

@@ -541,6 +541,9 @@ TEST(SolidConstraintsOfBuiltInExamples, HoldForWhateverIsMade) {
         if (reading->example().spacing != 1) {
             continue;  // requests here are in metres that are spacings
         }
+        if (!reading->example().constraints.empty()) {
+            continue;  // places here are looked up in grids of the model's size
+        }
         for (std::uint64_t seed = 0; seed < solid_case_count(4); ++seed) {
             SCOPED_TRACE(reading->example().name + ", seed " + std::to_string(seed));
             const Ending ending = expect_constraints_hold(reading, seed, 8);

@@ -42,6 +42,9 @@ Eigen::AlignedBox3d box_of(const Problem& problem) {
 Parameters parameters_of(const Example& example, const std::array<double, 3>& size) {
     Parameters parameters;
     parameters.size = size;
+    if (!example.constraints.empty()) {
+        parameters.constraints.emplace();  // masks leave no place in a small model
+    }
     return fill_defaults(parameters, example);
 }
 

@@ -216,3 +216,35 @@ def test_even_boxes_without_a_mesh_keep_their_ratio(server):
     for points in pieces.values():
         wide, high = (max(p[a] for p in points) - min(p[a] for p in points) for a in (0, 1))
         assert wide == pytest.approx(2 * high)
+
+
+def test_an_example_may_have_constraints_of_its_own(server):
+    """They hold unless a request says otherwise, and are refused where the example cannot mean
+    them."""
+    keep = {"kind": "probability", "objects": ["house"], "weight": 0,
+            "box": {"min": [0, 0, 0], "max": [9, 6, 18]}}
+    example = {**GABLE, "constraints": [keep]}
+
+    def west(job):
+        return min(corner[0] for one in triangles_of(server, job)["house"] for corner in one)
+    assert west(make(server, example)) >= 9
+    assert west(make(server, example, constraints=[])) < 9
+    uploaded = server.request("POST", "/v1/examples", example)
+    assert uploaded.status == 201, uploaded.body
+    stored = server.request("GET", f"/v1/examples/{uploaded.json()['id']}").json()
+    assert stored["constraints"][0]["objects"] == ["house"]
+    assert west(make(server, stored["id"])) >= 9
+    for wrong, place in (({**keep, "objects": ["hut"]}, "/objects/0"),
+                         ({"kind": "dimension", "object": "house", "normal": [1, 2, 3]}, "/normal")):
+        request = {**GABLE, "constraints": [keep, wrong]}
+        answer = server.request("POST", "/v1/examples", request)
+        assert_faults(answer, request, [f"/constraints/1{place}"])
+
+
+def test_letters_stand_where_their_masks_say(server):
+    job = make(server, "letters", size=[152, 8, 56])
+    parts = triangles_of(server, job)
+    third = {"stone": (0, 52), "windows": (52, 100), "glass": (100, 152)}
+    for material, (low, high) in third.items():
+        xs = [corner[0] for one in parts[material] for corner in one]
+        assert low < min(xs) and max(xs) < high

@@ -31,13 +31,17 @@ struct Patch {
 };
 
 class Reader {
+  public:
     static constexpr std::size_t kLooksMax = 200'000'000;  // some seconds
 
-  public:
     Reader(
-        const Example& example, std::span<const std::vector<FacePlane>> planes, const Topes& topes
+        const Example& example,
+        std::span<const std::vector<FacePlane>> planes,
+        const Topes& topes,
+        std::size_t looks_max
     )
-        : example_(example),
+        : looks_max_(looks_max),
+          example_(example),
           topes_(topes),
           solids_(example),
           extent_(extent_of(example)),
@@ -93,7 +97,7 @@ class Reader {
 
   private:
     // Whether all that may be looked at was looked at.
-    [[nodiscard]] bool is_spent() const { return looks_ > kLooksMax; }
+    [[nodiscard]] bool is_spent() const { return looks_ > looks_max_; }
 
     [[nodiscard]] bool is_in_bounds(const Point& point) const {
         return !example_.bounds ||
@@ -341,6 +345,7 @@ class Reader {
         figures_.push_back(std::move(figure));
     }
 
+    std::size_t looks_max_;
     const Example& example_;
     const Topes& topes_;
     Solids solids_;
@@ -358,9 +363,12 @@ class Reader {
 }  // namespace
 
 Result<std::vector<Figure>> read_figures(
-    const Example& example, std::span<const std::vector<FacePlane>> planes, const Topes& topes
+    const Example& example,
+    std::span<const std::vector<FacePlane>> planes,
+    const Topes& topes,
+    std::size_t readings
 ) {
-    return Reader(example, planes, topes).read();
+    return Reader(example, planes, topes, Reader::kLooksMax / readings).read();
 }
 
 }  // namespace modelsynth::continuous

@@ -74,9 +74,13 @@ class Figures {
 // The figures that stand somewhere in the example: at every point that three of its faces have in
 // common, between those on every edge, and on every face.
 // Requires: the plane of every face, by polyhedron and face, of the families of these topes.
-// Fails: kInvalidArgument where it cannot be told apart what is where, with the place.
+// Fails: kInvalidArgument where it cannot be told apart what is where, with the place; kTooLarge
+// when it would take longer than this one's share of some seconds, of so many readings.
 [[nodiscard]] Result<std::vector<Figure>> read_figures(
-    const Example& example, std::span<const std::vector<FacePlane>> planes, const Topes& topes
+    const Example& example,
+    std::span<const std::vector<FacePlane>> planes,
+    const Topes& topes,
+    std::size_t readings = 1
 );
 
 }  // namespace modelsynth::continuous

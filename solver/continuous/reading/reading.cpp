@@ -124,7 +124,7 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::size_t count = images[i].polyhedra.size();
         const auto planes = std::span(families->planes).subspan(i * count, count);
-        auto figures = read_figures(images[i], planes, *topes);
+        auto figures = read_figures(images[i], planes, *topes, images.size());
         if (!figures) {
             return tl::unexpected(std::move(figures.error()));
         }
