@@ -3,12 +3,12 @@
 #include "solver/continuous/import/face_merging.h"
 #include "solver/continuous/reading/families.h"
 #include "solver/continuous/reading/solids.h"
+#include "solver/core/disjoint_sets.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -19,36 +19,10 @@ namespace {
 // More hollows than this in one soup are left as solids that look inwards.
 constexpr std::size_t kHollowsMax = 64;
 
-// Disjoint sets of numbers.
-class Sets {
-  public:
-    explicit Sets(std::size_t count) : parents_(count) {
-        std::iota(parents_.begin(), parents_.end(), 0U);
-    }
-
-    // The least member of a number's set.
-    std::uint32_t find(std::uint32_t i) {
-        while (parents_[i] != i) {
-            parents_[i] = parents_[parents_[i]];
-            i = parents_[i];
-        }
-        return i;
-    }
-
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parents_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parents_;
-};
-
 // The number of the corner at which each half-edge begins: triangles have one in common only where
 // they are around it side by side.
 std::vector<std::uint32_t> corners_of(std::span<const HalfEdge> mates) {
-    Sets corners(mates.size());
+    DisjointSets corners(mates.size());
     for (HalfEdge half = 0; half < mates.size(); ++half) {
         corners.join(half, next_in_triangle(mates[half]));
     }
@@ -144,7 +118,7 @@ TriangleSolids find_triangle_solids(
         return found;
     }
     const std::vector<std::uint32_t> corners = corners_of(mates);
-    Sets parts(triangles.size());
+    DisjointSets parts(triangles.size());
     for (HalfEdge half = 0; half < mates.size(); ++half) {
         parts.join(half / 3, mates[half] / 3);
     }

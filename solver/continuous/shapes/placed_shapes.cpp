@@ -2,6 +2,7 @@
 
 #include "solver/continuous/shapes/cut_boxes.h"
 #include "solver/continuous/surface/sides.h"
+#include "solver/core/disjoint_sets.h"
 
 #include <Eigen/Geometry>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -38,59 +38,37 @@ Point area_of(const Surface& surface, const Loop& loop) {
 // The parts of an object's surface that enclose one piece of it each.
 class Pieces {
   public:
-    Pieces(const Surface& surface, std::span<const Point> normals, ObjectId object) {
+    Pieces(const Surface& surface, std::span<const Point> normals, ObjectId object)
+        : pieces_(surface.polygons.size()) {
         for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
             if (surface.polygons[p].object == object) {
                 polygons_.push_back(p);
             }
         }
-        root_.resize(surface.polygons.size());
-        std::iota(root_.begin(), root_.end(), std::size_t{0});
-        join(sides_of(surface, normals, object));
+        const std::vector<Side> sides = sides_of(surface, normals, object);
+        for (const Side& side : sides) {
+            if (side.twin != kNoSide) {
+                pieces_.join(side.polygon, sides[side.twin].polygon);
+            }
+        }
     }
 
     // Polygons by piece, in the order of the first ones.
     [[nodiscard]] std::vector<std::vector<std::size_t>> all() {
-        std::map<std::size_t, std::vector<std::size_t>> by_root;
+        std::map<std::size_t, std::vector<std::size_t>> by_first;
         for (const std::size_t polygon : polygons_) {
-            by_root[root(polygon)].push_back(polygon);
+            by_first[pieces_.find(polygon)].push_back(polygon);
         }
         std::vector<std::vector<std::size_t>> pieces;
-        for (auto& [first, polygons] : by_root) {
+        for (auto& [first, polygons] : by_first) {
             pieces.push_back(std::move(polygons));
         }
         return pieces;
     }
 
   private:
-    void join(const std::vector<Side>& sides) {
-        for (const Side& side : sides) {
-            if (side.twin != kNoSide) {
-                root_[root(side.polygon)] = root(sides[side.twin].polygon);
-            }
-        }
-        // The first polygon of a piece stands for it.
-        for (const std::size_t p : polygons_) {
-            std::size_t& of_root = first_.try_emplace(root(p), p).first->second;
-            of_root = std::min(of_root, p);
-        }
-        for (const auto& [old_root, first] : first_) {
-            root_[first] = first;
-            root_[old_root] = first;
-        }
-    }
-
-    std::size_t root(std::size_t polygon) {
-        while (root_[polygon] != polygon) {
-            root_[polygon] = root_[root_[polygon]];
-            polygon = root_[polygon];
-        }
-        return polygon;
-    }
-
     std::vector<std::size_t> polygons_;  // of the object
-    std::vector<std::size_t> root_;      // by polygon
-    std::map<std::size_t, std::size_t> first_;
+    DisjointSets pieces_;                // of polygons
 };
 
 // The box of a piece that is so much of it.

@@ -4,6 +4,7 @@
 #include "solver/continuous/reading/families.h"
 #include "solver/continuous/surface/plane_index.h"
 #include "solver/continuous/triangulation/triangulation.h"
+#include "solver/core/disjoint_sets.h"
 #include "solver/core/random.h"
 
 #include <Eigen/Dense>
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -25,31 +25,6 @@ namespace {
 constexpr std::uint32_t kPurposePerturbation = 18;  // RandomKey::purpose
 constexpr double kShortest = 0.3;                   // of an edge, of what it was
 constexpr int kRounds = 32;
-
-// Disjoint sets of numbers; each is named by its least member.
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-    }
-
-    std::size_t find(std::size_t member) {
-        while (parent_[member] != member) {
-            parent_[member] = parent_[parent_[member]];
-            member = parent_[member];
-        }
-        return member;
-    }
-
-    void join(std::size_t a, std::size_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::size_t> parent_;
-};
 
 // Polygons that touch in one plane are one face. Free faces that cannot be moved one by one are one
 // body; it goes along the firm faces that it meets.
