@@ -200,7 +200,7 @@ TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
         }
     }
     EXPECT_GT(models, solid_case_count(20));
-    EXPECT_GT(mitres, 0U);
+    EXPECT_GE(mitres, solid_case_count(40) / 40);  // few: of few models there may be none
 }
 
 INSTANTIATE_TEST_SUITE_P(
