@@ -257,6 +257,11 @@ Result<Finished> run_continuous(
     const continuous::Surface surface = continuous::make_surface(**problem, made->labels);
     made->stats.polygons = surface.polygons.size();
     made->stats.warnings = continuous::warnings_of(**problem);
+    if (!surface.is_closed) {
+        made->stats.warnings.emplace_back(
+            "the model is open where a free side cuts it: faces are left out there"
+        );
+    }
     const continuous::PlacedShapes shapes = continuous::place_shapes(solids->example(), surface);
     if (shapes.are_too_many) {
         made->stats.warnings.emplace_back(

@@ -232,6 +232,12 @@ std::vector<Point> exact_normals(std::span<const Point> of_families, const Surfa
     return normals;
 }
 
+bool has_all_twins(const std::vector<Side>& sides) {
+    return std::all_of(sides.begin(), sides.end(), [](const Side& side) {
+        return side.twin != kNoSide;
+    });
+}
+
 // Of the sweeps and meshes from these numbers on.
 std::size_t triangles_from(
     const PlacedDecorations& placed, std::size_t first_sweep, std::size_t first_mesh
@@ -267,6 +273,9 @@ PlacedDecorations place_decorations(
             continue;
         }
         const auto object = static_cast<ObjectId>(i + 1);
+        if (!surface.is_closed && !has_all_twins(sides_of(surface, of_polygons, object))) {
+            continue;
+        }
         ObjectDecorator decorator(surface, shapes, contacts, of_polygons, object);
         for (const Decoration& decoration : example.objects[i].decorations) {
             const std::size_t sweeps = placed.sweeps.size();

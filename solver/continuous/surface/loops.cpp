@@ -1,7 +1,5 @@
 #include "solver/continuous/surface/loops.h"
 
-#include "solver/core/result.h"
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -45,6 +43,15 @@ bool surrounds(
         }
     }
     return is_inside;
+}
+
+// Borders enclose nothing together.
+struct Inconsistent {};
+
+void require(bool condition) {
+    if (!condition) {
+        throw Inconsistent();
+    }
 }
 
 class LoopFinder {
@@ -182,17 +189,18 @@ class LoopFinder {
             if (edges_[at].is_from_corner) {
                 loop.push_back(edges_[at].from);
             }
-            at = is_on_rim(edges_[at].to) ? next_along_rim(at, loop) : next_of(at, start);
+            at = is_on_rim(edges_[at].to) ? next_along_rim(at, start, loop) : next_of(at, start);
         } while (at != start);
         (area_of(points_, loop, normal_) > 0 ? outers_ : holes_).push_back(std::move(loop));
     }
 
-    std::size_t next_along_rim(std::size_t at, Loop& loop) {
+    std::size_t next_along_rim(std::size_t at, std::size_t start, Loop& loop) {
         const std::size_t end = number_of_end_[at];
         const std::size_t next = (end + 1) % ends_.size();
-        check(ends_[next].is_begin, "borders that meet the rim from one side only");
+        const std::size_t edge = ends_[next].edge;
+        require(ends_[next].is_begin && (is_used_[edge] == 0 || edge == start));
         const std::uint32_t from = edges_[at].to;
-        const std::uint32_t to = edges_[ends_[next].edge].from;
+        const std::uint32_t to = edges_[edge].from;
         const bool is_round = next <= end;
         if (from != to || is_round) {
             loop.push_back(from);
@@ -213,7 +221,7 @@ class LoopFinder {
             }
             add_piece(before, to, i);
         }
-        return ends_[next].edge;
+        return edge;
     }
 
     // All corners of the rim, each once.
@@ -255,7 +263,7 @@ class LoopFinder {
                 least = angle;
             }
         }
-        check(best != edges_.end(), "borders that form no loop");
+        require(best != edges_.end());
         return static_cast<std::size_t>(best - edges_.begin());
     }
 
@@ -297,7 +305,7 @@ class LoopFinder {
                 }
             }
         }
-        check(best != nullptr, "a hole that is in no polygon");
+        require(best != nullptr);
         best->push_back(std::move(hole));
     }
 
@@ -347,7 +355,7 @@ std::uint32_t PointTable::on_box(const Point& place) {
     return point;
 }
 
-PlaneLoops find_loops(
+std::optional<PlaneLoops> find_loops(
     PointTable& points,
     std::span<const PlaneEdge> edges,
     const Point& normal,
@@ -355,7 +363,11 @@ PlaneLoops find_loops(
     BoxSides own,
     bool is_full
 ) {
-    return LoopFinder(points, edges, normal, rim, own).find(is_full);
+    try {
+        return LoopFinder(points, edges, normal, rim, own).find(is_full);
+    } catch (const Inconsistent&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace modelsynth::continuous

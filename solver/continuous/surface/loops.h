@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -60,9 +61,9 @@ class PointTable {
 
 // Chains borders to loops; one that ends at the rim is led along it to where the next one begins.
 // `own`: the side that the plane is itself, when it is one; only what lies on others, too, is on
-// its rim. `is_full`: without any border the whole rim is a polygon. Requires: borders that end
-// begin somewhere else or at the rim; see rim_of().
-[[nodiscard]] PlaneLoops find_loops(
+// its rim. `is_full`: without any border the whole rim is a polygon. Nothing where a border ends
+// and none goes on.
+[[nodiscard]] std::optional<PlaneLoops> find_loops(
     PointTable& points,
     std::span<const PlaneEdge> edges,
     const Point& normal,

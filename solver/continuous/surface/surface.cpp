@@ -284,7 +284,9 @@ class SurfaceBuilder {
         constexpr double kAside = 1e-7;
         const Figure& figure = reading_.figures().at(labels_[site]);
         const auto object_at = [&](double side) {
-            const Point there = way + side * topes_.normals()[plane.family];
+            // On no plane, so that it lies in some cell.
+            const Point aside = kAside * 1e-3 * Point(0.31, 0.53, 0.79);
+            const Point there = way + side * topes_.normals()[plane.family] + aside;
             FamilySet sides = 0;
             for (std::size_t family = 0; family < topes_.family_count(); ++family) {
                 sides |= topes_.normals()[family].dot(there) > 0 ? bit(family) : 0;
@@ -356,11 +358,17 @@ class SurfaceBuilder {
         return vertices_[family][number];
     }
 
-    void put(PlaneLoops loops, ObjectId object, std::uint8_t family, bool is_along_normal) {
-        for (auto& polygon : loops.polygons) {
+    void put(
+        std::optional<PlaneLoops> loops, ObjectId object, std::uint8_t family, bool is_along_normal
+    ) {
+        if (!loops) {
+            surface_.is_closed = false;
+            return;
+        }
+        for (auto& polygon : loops->polygons) {
             surface_.polygons.push_back({object, family, is_along_normal, std::move(polygon)});
         }
-        for (const RimPiece& piece : loops.pieces) {
+        for (const RimPiece& piece : loops->pieces) {
             if (family != kNoFamily) {
                 cuts_[{piece.side, object}].push_back({piece.to, piece.from});
             }

@@ -24,6 +24,9 @@ struct SurfacePolygon {
 struct Surface {
     std::vector<Point> points;  // metres
     std::vector<SurfacePolygon> polygons;
+    // False where borders at a free side enclosed nothing together, as may be where lines only cut
+    // off a corner of the planes' box: what was to be there is left out.
+    bool is_closed = true;
 };
 
 // Read from the figures alone: where the figure of an edge has an object on one side of it in a

@@ -6,6 +6,9 @@
 #include "solver/continuous/planes/spacing.h"
 #include "solver/continuous/problem.h"
 #include "solver/continuous/reading/reading.h"
+#include "solver/continuous/scene.h"
+#include "solver/continuous/surface/loops.h"
+#include "solver/continuous/surface/rim.h"
 #include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
 #include "solver/continuous/warnings.h"
@@ -112,6 +115,28 @@ TEST(FreeSides, OfWhichOneIsFreeChangeNothingOfWhatMustEnd) {
     EXPECT_EQ(area_at(surface, 2, 0, 0), 0);
 }
 
+// Borders as labels should never leave them; a request must not be able to end the program.
+TEST(Loops, AreNoneWhereABorderEndsAndNoneGoesOn) {
+    const Bounds box = {Point(0, 0, 0), Point(4, 4, 4)};
+    const Rim rim = rim_of(box, Point::UnitY(), 2);
+    PointTable points(box);
+    const std::uint32_t inner = points.add({2, 2, 2});
+    const std::uint32_t west = points.on_box({0, 2, 2});
+    const std::uint32_t east = points.on_box({4, 2, 2});
+    const auto find = [&](const std::vector<PlaneEdge>& edges) {
+        return find_loops(points, edges, Point::UnitY(), rim, 0, false);
+    };
+    EXPECT_FALSE(find({{west, inner}}));                 // ends within
+    EXPECT_FALSE(find({{inner, west}}));                 // begins within
+    EXPECT_FALSE(find({{west, inner}, {east, inner}}));  // meet head on
+    EXPECT_FALSE(find({{inner, west}, {inner, east}}));  // meet the rim from one side only
+    const auto through = find({{west, inner, true}, {inner, east, false}});
+    ASSERT_TRUE(through);
+    ASSERT_EQ(through->polygons.size(), 1U);
+    EXPECT_EQ(through->polygons[0][0].size(), 4U);
+    EXPECT_EQ(through->pieces.size(), 3U);
+}
+
 // The roof's slopes look east and west only.
 Reading read_gabled_house() {
     return ExampleReading::make(
@@ -119,6 +144,15 @@ Reading read_gabled_house() {
                )
     )
         .value();
+}
+
+TEST(Loops, ThatAreMissingLeaveAModelThatCanBeDrawn) {
+    const Reading houses = examples::find_solids("houses");
+    const Parameters parameters = sized(houses, {12, 8, 12});
+    Surface surface = make(houses, parameters, 2);
+    surface.polygons.erase(surface.polygons.begin(), surface.polygons.begin() + 20);
+    surface.is_closed = false;
+    EXPECT_FALSE(make_scene(*houses, surface).names.empty());
 }
 
 TEST(Variants, ReadTheExampleInAllTheWaysAskedFor) {
