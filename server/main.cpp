@@ -1,3 +1,4 @@
+#include "server/http/admission.h"
 #include "server/http/api.h"
 #include "server/http/server.h"
 #include "server/jobs/job_service.h"
@@ -21,7 +22,12 @@ int serve(const Config& config) {
         return 1;
     }
     JobService service(config.jobs, **store, **store, **store, (*store)->artifacts(), log);
-    Api api(service, config.http.limits);
+    Admission admission(config.access);
+    if (const auto loaded = admission.load_keys(); !loaded) {
+        std::fprintf(stderr, "modelsynthd: %s\n", loaded.error().c_str());
+        return 1;
+    }
+    Api api(service, admission, config.http.limits);
     HttpServer server(config.http, api, log);
     const std::uint16_t port = server.listen();
     const bool is_v6 = config.http.address.find(':') != std::string::npos;
@@ -34,7 +40,14 @@ int serve(const Config& config) {
     );
     std::fflush(stdout);
     log->info("started data={} workers={}", config.data_directory, config.jobs.workers);
-    server.run([&service] { service.drain(); });
+    const auto reload = [&admission, &log] {
+        if (const auto loaded = admission.load_keys(); loaded) {
+            log->info("configuration read again");
+        } else {
+            log->error("the keys stay as they were why=\"{}\"", loaded.error());
+        }
+    };
+    server.run([&service] { service.drain(); }, reload);
     log->info("stopped");
     return 0;
 }

@@ -26,7 +26,31 @@ struct Route {
     BodyKind body = BodyKind::kOther;
 };
 
-constexpr std::array<Route, 24> kRoutes = {
+// Health, and what there is to read before one has a key.
+constexpr std::array<const char*, 3> kOpen = {"/healthz", "/readyz", "/problems/{}"};
+
+// What a browser opens without being able to send a key.
+constexpr std::array<const char*, 2> kStreams = {"/v1/jobs/{}/events", "/v1/jobs/{}/stream"};
+
+template <std::size_t N>
+bool is_among(const std::array<const char*, N>& paths, std::string_view path) {
+    return std::find(paths.begin(), paths.end(), path) != paths.end();
+}
+
+Need need_of(const Route& route) {
+    const bool is_get = std::string_view(route.method) == "GET";
+    Need need;
+    need.takes_tickets = is_among(kStreams, route.path);
+    // A WebSocket is none of what browsers keep from other pages.
+    need.changes_things = !is_get || need.takes_tickets;
+    if (!is_among(kOpen, route.path)) {
+        const bool only_reads = is_get || std::string_view(route.path) == "/v1/tickets";
+        need.scope = only_reads ? proto::Scope::kRead : proto::Scope::kSubmit;
+    }
+    return need;
+}
+
+constexpr std::array<Route, 25> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -48,6 +72,7 @@ constexpr std::array<Route, 24> kRoutes = {
      {"GET", "/v1/examples/{}/figures.svg", get_example_figures},
      {"GET", "/v1/solvers", list_solvers},
      {"GET", "/v1/solvers/{}", get_solver},
+     {"POST", "/v1/tickets", give_ticket},
      {"GET", "/healthz", healthz},
      {"GET", "/readyz", readyz},
      {"GET", "/problems/{}", get_problem}}};
@@ -121,7 +146,10 @@ std::uint64_t Api::body_bytes_max(const Request& request) const {
     return limits_.other_body_bytes_max;
 }
 
-std::optional<Response> Api::check_head(const Request& request) const {
+std::optional<Response> Api::check_head(Request& request) {
+    if (auto answer = admission_.check_browser(request)) {
+        return answer;
+    }
     const Match match = find_route(request);
     if (match.allow.empty()) {
         return problem_response(
@@ -135,6 +163,9 @@ std::optional<Response> Api::check_head(const Request& request) const {
         );
         response.headers.emplace_back("Allow", match.allow);
         return response;
+    }
+    if (auto refusal = admission_.admit(request, need_of(*match.route))) {
+        return refusal;
     }
     if (request.content_length > body_bytes_max(request)) {
         return problem_response(
@@ -167,10 +198,14 @@ std::optional<Response> Api::check_head(const Request& request) const {
 
 Response Api::handle(const Request& request) {
     Match match = find_route(request);
-    if (match.route == nullptr) {
-        return *check_head(request);
+    // Of what belongs to another key nobody learns more than of what is not there.
+    if (!request.caller.sees_all &&
+        std::string_view(match.route->path).starts_with("/v1/jobs/{}")) {
+        if (const auto job = service_.find(match.id, request.caller); !job) {
+            return problem_response(job.error(), request);
+        }
     }
-    return match.route->handler({service_, request, std::move(match.id)});
+    return match.route->handler({service_, admission_, request, std::move(match.id)});
 }
 
 Response Api::answer_with_job(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/admission.h"
 #include "server/http/message.h"
 #include "server/jobs/job_service.h"
 
@@ -28,11 +29,13 @@ struct HttpLimits {
 // block. Thread-safe.
 class Api {
   public:
-    Api(JobService& service, const HttpLimits& limits) : service_(service), limits_(limits) {}
+    Api(JobService& service, Admission& admission, const HttpLimits& limits)
+        : service_(service), admission_(admission), limits_(limits) {}
 
-    // What can be refused before the body is read: unknown paths, wrong methods, bodies that are
-    // too long or of another type. Nothing when the body is wanted.
-    [[nodiscard]] std::optional<Response> check_head(const Request& request) const;
+    // What can be refused before the body is read: unknown paths, wrong methods, callers who may
+    // not ask, bodies that are too long or of another type. Nothing when the body is wanted; then
+    // the request tells on whose behalf it is.
+    [[nodiscard]] std::optional<Response> check_head(Request& request);
 
     // How long the body may be.
     [[nodiscard]] std::uint64_t body_bytes_max(const Request& request) const;
@@ -48,6 +51,7 @@ class Api {
 
   private:
     JobService& service_;
+    Admission& admission_;
     HttpLimits limits_;
 };
 

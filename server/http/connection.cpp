@@ -379,8 +379,10 @@ class Connection {
         std::string text =
             "HTTP/1.1 " + std::to_string(response.status) + " " +
             std::string(http::obsolete_reason(static_cast<http::status>(response.status))) + "\r\n";
-        for (const auto& [name, value] : response.headers) {
-            text += name + ": " + value + "\r\n";
+        for (const Fields* fields : {&response.headers, &exchange.request.answer_fields}) {
+            for (const auto& [name, value] : *fields) {
+                text += name + ": " + value + "\r\n";
+            }
         }
         text += "Server: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
         if (length) {

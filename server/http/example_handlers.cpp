@@ -30,7 +30,7 @@ Response example_glb(const Call& call, const Scene& scene, bool named_nodes, con
 
 template <class Answer>
 Response with_analysis(const Call& call, Answer answer) {
-    const auto entry = call.service.examples().find(call.id);
+    const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
     }
@@ -41,7 +41,7 @@ Response with_analysis(const Call& call, Answer answer) {
 }  // namespace
 
 Response list_examples(const Call& call) {
-    const auto entries = call.service.examples().list();
+    const auto entries = call.service.examples().list(call.request.caller);
     if (!entries) {
         return refuse(call, entries.error());
     }
@@ -55,7 +55,7 @@ Response list_examples(const Call& call) {
 Response upload_example(const Call& call) {
     const auto form = media_type(call.request) == "model/gltf-binary" ? ExampleLibrary::Form::kGlb
                                                                       : ExampleLibrary::Form::kJson;
-    const auto entry = call.service.examples().upload(call.request.body, form);
+    const auto entry = call.service.examples().upload(call.request.body, form, call.request.caller);
     if (!entry) {
         return refuse(call, entry.error());
     }
@@ -66,7 +66,7 @@ Response upload_example(const Call& call) {
 }
 
 Response get_example(const Call& call) {
-    const auto entry = call.service.examples().find(call.id);
+    const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
     }
@@ -74,7 +74,7 @@ Response get_example(const Call& call) {
 }
 
 Response delete_example(const Call& call) {
-    const auto erased = call.service.examples().erase(call.id);
+    const auto erased = call.service.examples().erase(call.id, call.request.caller);
     if (!erased) {
         return refuse(call, erased.error());
     }
@@ -82,7 +82,7 @@ Response delete_example(const Call& call) {
 }
 
 Response get_example_model(const Call& call) {
-    const auto entry = call.service.examples().find(call.id);
+    const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
     }
@@ -90,7 +90,7 @@ Response get_example_model(const Call& call) {
 }
 
 Response get_example_pieces(const Call& call) {
-    const auto entry = call.service.examples().find(call.id);
+    const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
     }
@@ -123,7 +123,7 @@ Response get_example_figures(const Call& call) {
     if (auto problem = check_query(call.request, {"figure"})) {
         return refuse(call, *problem);
     }
-    const auto entry = call.service.examples().find(call.id);
+    const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
     }

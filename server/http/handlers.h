@@ -1,6 +1,7 @@
 #pragma once
 
 #include "proto/problem.h"
+#include "server/http/admission.h"
 #include "server/http/message.h"
 #include "server/jobs/job_service.h"
 
@@ -13,6 +14,7 @@ namespace modelsynth::server {
 // A request in the hands of its handler.
 struct Call {
     JobService& service;
+    Admission& admission;
     const Request& request;
     std::string id;  // the {id} of the path, if it has one
 };
@@ -47,6 +49,7 @@ struct Call {
 // service_handlers.cpp
 [[nodiscard]] Response list_solvers(const Call& call);
 [[nodiscard]] Response get_solver(const Call& call);
+[[nodiscard]] Response give_ticket(const Call& call);
 [[nodiscard]] Response healthz(const Call& call);
 [[nodiscard]] Response readyz(const Call& call);
 [[nodiscard]] Response get_problem(const Call& call);

@@ -18,7 +18,7 @@ Response submit_job(const Call& call) {
     if (!key) {
         return refuse(call, key.error());
     }
-    const auto submitted = call.service.submit(call.request.body, *key);
+    const auto submitted = call.service.submit(call.request.body, *key, call.request.caller, "");
     if (!submitted) {
         return refuse(call, submitted.error());
     }
@@ -39,6 +39,7 @@ Response list_jobs(const Call& call) {
         return refuse(call, *problem);
     }
     JobQuery query;
+    query.owner = call.request.caller.filter();
     if (const auto state = call.request.query_field("state")) {
         query.state = proto::state_of(*state);
         if (!query.state) {

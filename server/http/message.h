@@ -1,6 +1,8 @@
 #pragma once
 
+#include "proto/key_codec.h"
 #include "proto/problem.h"
+#include "server/jobs/caller.h"
 #include "server/store/artifact_store.h"
 
 #include <chrono>
@@ -26,6 +28,9 @@ struct Request {
     Fields headers;
     std::string body;
     std::uint64_t content_length = 0;
+    Caller caller;
+    std::shared_ptr<const proto::KeyEntry> key;  // that the request came with; null: none
+    Fields answer_fields;                        // what every answer to it tells besides
 
     // The first header or query field of the name.
     [[nodiscard]] std::optional<std::string> header(std::string_view name) const;

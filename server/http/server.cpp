@@ -32,6 +32,7 @@ struct HttpServer::State {
           log(std::move(logger)),
           acceptor(io),
           signals(io),
+          hangups(io, SIGHUP),
           pool(given.pool_threads) {}
 
     HttpConfig config;
@@ -40,6 +41,7 @@ struct HttpServer::State {
     net::io_context io;
     tcp::acceptor acceptor;
     net::signal_set signals;
+    net::signal_set hangups;
     ConnectionCounters counters;
     net::thread_pool pool;  // last: its threads are joined while the rest still stands
 };
@@ -83,6 +85,18 @@ net::awaitable<void> accept_connections(
     }
 }
 
+// Calls for each SIGHUP.
+net::awaitable<void> await_hangups(net::signal_set& hangups, const std::function<void()>& call) {
+    constexpr auto kToken = net::as_tuple(net::use_awaitable);
+    for (;;) {
+        auto [error, signal] = co_await hangups.async_wait(kToken);
+        if (error) {
+            co_return;
+        }
+        call();
+    }
+}
+
 }  // namespace
 
 HttpServer::HttpServer(const HttpConfig& config, Api& api, std::shared_ptr<spdlog::logger> log)
@@ -104,7 +118,9 @@ std::uint16_t HttpServer::listen() {
     return state_->acceptor.local_endpoint().port();
 }
 
-void HttpServer::run(const std::function<void()>& on_signal) {
+void HttpServer::run(
+    const std::function<void()>& on_signal, const std::function<void()>& on_hangup
+) {
     State& state = *state_;
     state.signals.add(SIGTERM);
     state.signals.add(SIGINT);
@@ -136,6 +152,8 @@ void HttpServer::run(const std::function<void()>& on_signal) {
         accept_connections(state.acceptor, state.io, context, state.log),
         [](const std::exception_ptr&) {}
     );
+    net::co_spawn(state.io, await_hangups(state.hangups, on_hangup), [](const std::exception_ptr&) {
+    });
     std::vector<std::thread> threads;
     const auto serve = [&state] {
         for (;;) {

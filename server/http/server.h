@@ -34,8 +34,9 @@ class HttpServer {
 
     // Serves until stop() or SIGTERM or SIGINT. On a signal: /readyz turns 503 and submissions
     // are refused, `on_signal` runs (on a thread that may block), streams are closed, and run()
-    // returns. A second signal ends the process at once.
-    void run(const std::function<void()>& on_signal);
+    // returns. A second signal ends the process at once. `on_hangup` runs for each SIGHUP, on a
+    // network thread.
+    void run(const std::function<void()>& on_signal, const std::function<void()>& on_hangup);
 
     // Thread-safe.
     void stop();

@@ -27,6 +27,19 @@ Response get_solver(const Call& call) {
     return json_response(200, std::move(solver));
 }
 
+Response give_ticket(const Call& call) {
+    const auto job_id = proto::parse_ticket_request(call.request.body);
+    if (!job_id) {
+        return refuse(call, job_id.error());
+    }
+    if (!job_id->empty()) {
+        if (const auto job = call.service.find(*job_id, call.request.caller); !job) {
+            return refuse(call, job.error());
+        }
+    }
+    return call.admission.give_ticket(call.request, *job_id);
+}
+
 Response healthz(const Call& /*call*/) { return json_response(200, R"({"status":"alive"})"); }
 
 Response readyz(const Call& call) {

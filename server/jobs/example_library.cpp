@@ -27,9 +27,15 @@ ExampleLibrary::ExampleLibrary(
 )
     : store_(store), artifacts_(artifacts), limits_(limits), uploads_max_(uploads_max) {}
 
-std::optional<ExampleLibrary::Entry> ExampleLibrary::find(const std::string& id) {
+std::optional<ExampleLibrary::Entry> ExampleLibrary::find(
+    const std::string& id, const Caller& caller
+) {
     if (auto built_in = find_built_in(id)) {
         return built_in;
+    }
+    const auto row = store_.find_example(id, caller.filter());
+    if (!row) {
+        return std::nullopt;
     }
     {
         const std::lock_guard lock(mutex_);
@@ -41,8 +47,7 @@ std::optional<ExampleLibrary::Entry> ExampleLibrary::find(const std::string& id)
             return parsed_.front();
         }
     }
-    const auto row = store_.find_example(id);
-    auto example = row ? load(row->digest) : std::nullopt;
+    auto example = load(row->digest);
     if (!example) {
         return std::nullopt;
     }
@@ -62,24 +67,26 @@ std::optional<Example> ExampleLibrary::load(const std::string& digest) {
     return upload ? std::optional<Example>(std::move(upload->example)) : std::nullopt;
 }
 
-proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list() {
+proto::Parsed<std::vector<ExampleLibrary::Entry>> ExampleLibrary::list(const Caller& caller) {
     std::vector<Entry> entries;
     for (const Example& example : examples::all()) {
         entries.push_back({std::string(name_of(example)), true, example});
     }
-    const auto rows = store_.list_examples();
+    const auto rows = store_.list_examples(caller.filter());
     if (!rows) {
         return tl::unexpected(problem_of(rows.error()));
     }
     for (const auto& row : *rows) {
-        if (auto entry = find(row.id)) {
+        if (auto entry = find(row.id, caller)) {
             entries.push_back(std::move(*entry));
         }
     }
     return entries;
 }
 
-proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view body, Form form) {
+proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(
+    std::string_view body, Form form, const Caller& caller
+) {
     auto upload = form == Form::kGlb ? proto::parse_example_glb(body, limits_)
                                      : proto::parse_example(body, limits_);
     if (!upload) {
@@ -91,8 +98,9 @@ proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view bod
     }
     const std::string& digest = (*pin)->digest();
     Entry entry = {id_of(digest), false, upload->example, digest};
-    const auto kept =
-        store_.add_example({entry.id, std::string(name_of(upload->example)), digest}, uploads_max_);
+    const auto kept = store_.add_example(
+        {entry.id, std::string(name_of(upload->example)), digest}, caller.owner, uploads_max_
+    );
     if (!kept) {
         if (kept.error().code == StoreErrorCode::kQueueFull) {
             return tl::unexpected(proto::make_problem("too-large", kept.error().message));
@@ -103,13 +111,13 @@ proto::Parsed<ExampleLibrary::Entry> ExampleLibrary::upload(std::string_view bod
     return entry;
 }
 
-proto::Parsed<void> ExampleLibrary::erase(const std::string& id) {
+proto::Parsed<void> ExampleLibrary::erase(const std::string& id, const Caller& caller) {
     if (find_built_in(id)) {
         return tl::unexpected(
             proto::make_problem("forbidden", "built-in examples cannot be deleted")
         );
     }
-    const auto erased = store_.erase_example(id);
+    const auto erased = store_.erase_example(id, caller.filter());
     if (!erased && erased.error().code == StoreErrorCode::kConflict) {
         return tl::unexpected(proto::make_problem("example-in-use", erased.error().message));
     }

@@ -2,6 +2,7 @@
 
 #include "proto/limits.h"
 #include "proto/problem.h"
+#include "server/jobs/caller.h"
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
 #include "solver/registry/task.h"
@@ -17,7 +18,7 @@
 namespace modelsynth::server {
 
 // The examples there are: built-in ones by name, uploaded ones from the store, a few of which are
-// kept parsed. Thread-safe; calls block.
+// kept parsed. Of what others uploaded a caller learns nothing. Thread-safe; calls block.
 class ExampleLibrary {
   public:
     struct Entry {
@@ -34,7 +35,7 @@ class ExampleLibrary {
         std::size_t uploads_max
     );
 
-    [[nodiscard]] std::optional<Entry> find(const std::string& id);
+    [[nodiscard]] std::optional<Entry> find(const std::string& id, const Caller& caller);
 
     // The id of an uploaded example with a text of this digest.
     [[nodiscard]] static std::string id_of(const std::string& digest);
@@ -43,15 +44,17 @@ class ExampleLibrary {
     [[nodiscard]] std::optional<Example> load(const std::string& digest);
 
     // Built-in ones first, then the uploaded ones by id.
-    [[nodiscard]] proto::Parsed<std::vector<Entry>> list();
+    [[nodiscard]] proto::Parsed<std::vector<Entry>> list(const Caller& caller);
 
     // Checks the example and keeps it; the id is derived from the content. A GLB is kept as the
     // JSON that says the same.
     enum class Form : std::uint8_t { kJson, kGlb };
-    [[nodiscard]] proto::Parsed<Entry> upload(std::string_view body, Form form);
+    [[nodiscard]] proto::Parsed<Entry> upload(
+        std::string_view body, Form form, const Caller& caller
+    );
 
     // Fails: not-found, forbidden for a built-in one, example-in-use.
-    [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
+    [[nodiscard]] proto::Parsed<void> erase(const std::string& id, const Caller& caller);
 
   private:
     void remember(const Entry& entry);

@@ -41,7 +41,7 @@ std::vector<ArtifactLink> InheritedInputs::links(const std::string& example_id) 
 std::optional<ExampleLibrary::Entry> find_example(
     JobStore& jobs, ExampleLibrary& examples, const std::string& job_id, const std::string& id
 ) {
-    if (auto entry = examples.find(id)) {
+    if (auto entry = examples.find(id, {})) {
         return entry;
     }
     const auto kept = jobs.artifact(job_id, kExampleArtifact);

@@ -87,7 +87,7 @@ void JobService::work(const std::stop_token& stop) {
             seen = submissions_;
         }
         expire_now_and_then();
-        const auto claim = jobs_.claim(proto::now_millis());
+        const auto claim = jobs_.claim(proto::now_millis(), {});
         if (claim && *claim) {
             // A job that is alone takes the workers that have nothing to do to help, as far as
             // there are processors for them.
@@ -112,7 +112,12 @@ void JobService::expire_now_and_then() {
     }
 }
 
-Parsed<Submitted> JobService::submit(std::string_view body, const std::string& idempotency_key) {
+Parsed<Submitted> JobService::submit(
+    std::string_view body,
+    const std::string& idempotency_key,
+    const Caller& caller,
+    const std::string& traceparent
+) {
     // A retry gets its first answer whatever has changed since, so the key comes first.
     std::string request_hash;
     if (!idempotency_key.empty()) {
@@ -121,7 +126,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
             return tl::unexpected(canonical.error());
         }
         request_hash = sha256_hex(*canonical);
-        auto known = jobs_.find_key(idempotency_key, request_hash);
+        auto known = jobs_.find_key(caller.owner, idempotency_key, request_hash);
         if (!known) {
             return tl::unexpected(problem_of(known.error()));
         }
@@ -136,12 +141,12 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     auto request = proto::parse_job_request(
         body,
         config_.limits,
-        [this](const std::string& id) -> std::optional<Example> {
-            auto entry = examples_.find(id);
+        [&](const std::string& id) -> std::optional<Example> {
+            auto entry = examples_.find(id, caller);
             return entry ? std::optional(std::move(entry->example)) : std::nullopt;
         },
-        [this, &inputs](const std::string& id, std::uint32_t alternative) {
-            return find_origin(id, alternative, inputs);
+        [&](const std::string& id, std::uint32_t alternative) {
+            return find_origin(id, alternative, caller, inputs);
         },
         make_seed()
     );
@@ -151,6 +156,8 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     NewJob job;
     job.created = proto::now_millis();
     job.id = make_job_id(job.created);
+    job.owner = caller.owner;
+    job.traceparent = traceparent;
     job.solver = request->solver;
     job.seed = request->task.seed;
     job.priority = request->priority;
@@ -160,7 +167,7 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
     job.artifacts = inputs.links(job.example_id);
-    auto submitted = parsed(jobs_.submit(job, config_.queue_max));
+    auto submitted = parsed(jobs_.submit(job, {config_.queue_max, caller.unfinished_max}));
     if (submitted && !submitted->replayed) {
         const std::lock_guard lock(mutex_);
         ++submissions_;
@@ -169,7 +176,13 @@ Parsed<Submitted> JobService::submit(std::string_view body, const std::string& i
     return submitted;
 }
 
-Parsed<Job> JobService::find(const std::string& id) { return parsed(jobs_.find(id)); }
+Parsed<Job> JobService::find(const std::string& id, const Caller& caller) {
+    auto job = parsed(jobs_.find(id));
+    if (job && !caller.sees_all && job->owner != caller.owner) {
+        return tl::unexpected(make_problem("not-found", "there is no job " + id));
+    }
+    return job;
+}
 
 Parsed<JobPage> JobService::list(const JobQuery& query) { return parsed(jobs_.list(query)); }
 
@@ -244,8 +257,11 @@ Parsed<Job> JobService::find_with_model(
 }
 
 Parsed<proto::JobRequest> JobService::find_origin(
-    const std::string& id, std::uint32_t alternative, InheritedInputs& inputs
+    const std::string& id, std::uint32_t alternative, const Caller& caller, InheritedInputs& inputs
 ) {
+    if (auto visible = find(id, caller); !visible) {
+        return tl::unexpected(std::move(visible.error()));
+    }
     const auto job = find_finished(id);
     if (!job) {
         return tl::unexpected(job.error());

@@ -4,6 +4,7 @@
 #include "proto/job_request.h"
 #include "proto/limits.h"
 #include "proto/problem.h"
+#include "server/jobs/caller.h"
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_inputs.h"
@@ -56,9 +57,14 @@ class JobService {
     JobService& operator=(const JobService&) = delete;
 
     [[nodiscard]] proto::Parsed<Submitted> submit(
-        std::string_view body, const std::string& idempotency_key
+        std::string_view body,
+        const std::string& idempotency_key,
+        const Caller& caller,
+        const std::string& traceparent
     );
-    [[nodiscard]] proto::Parsed<proto::Job> find(const std::string& id);
+    // Fails: not-found, also when it is none of the caller's. What follows by id takes the id of
+    // anybody's job.
+    [[nodiscard]] proto::Parsed<proto::Job> find(const std::string& id, const Caller& caller = {});
     [[nodiscard]] proto::Parsed<JobPage> list(const JobQuery& query);
     // Asks for the end; a running job ends within one block.
     [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
@@ -128,9 +134,12 @@ class JobService {
         const std::string& id, const std::optional<std::uint32_t>& alternative
     );
     // The request of a job to start from; what the new one needs of it goes to `inputs`.
-    // Fails: as find_finished().
+    // Fails: as find() and find_finished().
     [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
-        const std::string& id, std::uint32_t alternative, InheritedInputs& inputs
+        const std::string& id,
+        std::uint32_t alternative,
+        const Caller& caller,
+        InheritedInputs& inputs
     );
 
     JobServiceConfig config_;

@@ -11,7 +11,7 @@ namespace modelsynth::server {
 namespace {
 
 // Sets address and port from ADDRESS:PORT; the text of what is wrong, or nothing.
-std::string parse_listen(const std::string& text, HttpConfig& http) {
+std::string parse_listen(const std::string& text, bool has_keys, HttpConfig& http) {
     const std::size_t colon = text.rfind(':');
     if (colon == std::string::npos) {
         return "--listen must be ADDRESS:PORT";
@@ -30,8 +30,8 @@ std::string parse_listen(const std::string& text, HttpConfig& http) {
         port.find_first_not_of("0123456789") != std::string::npos || std::stoul(port) > 65535) {
         return "--listen must be ADDRESS:PORT with a numeric address";
     }
-    if (!parsed.is_loopback()) {
-        return "without keys only loopback addresses are listened on";
+    if (!parsed.is_loopback() && !has_keys) {
+        return "without keys (--keys) only loopback addresses are listened on";
     }
     http.address = address;
     http.port = static_cast<std::uint16_t>(std::stoul(port));
@@ -55,6 +55,18 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     app.add_option("--workers", config.jobs.workers, "Threads that solve")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
+    app.add_option("--keys", config.access.keys_file, "File of keys, read again on SIGHUP")
+        ->check(CLI::ExistingFile);
+    app.add_option(
+        "--allow-origin",
+        config.access.browsers.origins,
+        "Pages of this origin may ask, as https://studio.example.com; * for all"
+    );
+    app.add_option(
+        "--allow-host",
+        config.access.browsers.hosts,
+        "Further name of this server, which browsers may call it without a key"
+    );
     app.add_option("--log-level", config.log_level, "debug, info, warn or error")
         ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
         ->capture_default_str();
@@ -96,7 +108,8 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
         ->capture_default_str();
     try {
         app.parse(argc, argv);
-        const std::string wrong = parse_listen(listen, config.http);
+        const std::string wrong =
+            parse_listen(listen, !config.access.keys_file.empty(), config.http);
         if (!wrong.empty()) {
             throw CLI::ValidationError(wrong);
         }

@@ -16,6 +16,7 @@ struct Config {
     proto::UnixMillis retention_ms = proto::UnixMillis{7} * 24 * 3600 * 1000;
     JobServiceConfig jobs;
     HttpConfig http;
+    AccessConfig access;
 };
 
 // The configuration of a command line. The error is the exit code to end with; what there is to

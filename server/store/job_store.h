@@ -16,22 +16,33 @@ class JobStore {
     virtual ~JobStore() = default;
 
     // Job, key, links to artifacts and event 1 (`queued`) appear in one commit, or none does. A
-    // known key with the same hash answers with its job. Fails: kConflict (the key has another
-    // hash, or a digest is not stored), kQueueFull when queue_max jobs are queued.
-    [[nodiscard]] virtual Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) = 0;
+    // key that its owner used before with the same hash answers with its job. Fails: kConflict (the
+    // key has another hash, or a digest is not stored), kQueueFull, kOwnerFull.
+    [[nodiscard]] virtual Stored<Submitted> submit(
+        const NewJob& job, const QueueLimits& limits
+    ) = 0;
 
-    // The job that was submitted with the key, or nothing. Fails: kConflict as submit().
+    // The job that the owner submitted with the key, or nothing. Fails: kConflict as submit().
     [[nodiscard]] virtual Stored<std::optional<proto::Job>> find_key(
-        const std::string& idempotency_key, const std::string& request_hash
+        const std::string& owner,
+        const std::string& idempotency_key,
+        const std::string& request_hash
     ) = 0;
 
     [[nodiscard]] virtual Stored<proto::Job> find(const std::string& id) = 0;
     [[nodiscard]] virtual Stored<JobPage> list(const JobQuery& query) = 0;
     [[nodiscard]] virtual Stored<std::size_t> queued_count() = 0;
 
-    // The queued job of highest priority, a job that waited 30 s counting as one level higher,
-    // equal ones in order of arrival; it is then running. Nothing when none is queued.
-    [[nodiscard]] virtual Stored<std::optional<Claim>> claim(proto::UnixMillis now) = 0;
+    // The next queued job that keeps to the limits; it is then running. Nothing when there is none.
+    // Higher priority goes first. Among jobs of one priority owners take turns, so that each
+    // comes by as much of what jobs cost as any other (start-time fair queueing; Goyal, Vin and
+    // Cheng 1996); those of one owner go in order of arrival. None starves: jobs of an owner and
+    // priority count as one level higher for each 30 s in which none of them was handed out. A job
+    // whose memory is not free is passed by until it has waited 30 s; from then on all others wait
+    // for it.
+    [[nodiscard]] virtual Stored<std::optional<Claim>> claim(
+        proto::UnixMillis now, const ClaimLimits& limits
+    ) = 0;
 
     // Appends events of a running job, numbered in the commit that writes them, and its checkpoint
     // and links to artifacts in the same one. Under another solver version than the append before,
@@ -91,13 +102,20 @@ class ExampleStore {
 
     virtual ~ExampleStore() = default;
 
-    // Keeps the example; one of that id stays as it is. Fails: kConflict when the digest is not
-    // stored, kQueueFull when count_max examples are kept.
-    [[nodiscard]] virtual Stored<void> add_example(const Row& row, std::size_t count_max) = 0;
-    [[nodiscard]] virtual Stored<Row> find_example(const std::string& id) = 0;
-    [[nodiscard]] virtual Stored<std::vector<Row>> list_examples() = 0;
-    // Fails: kConflict while an unfinished job uses it.
-    [[nodiscard]] virtual Stored<void> erase_example(const std::string& id) = 0;
+    // Keeps the example; one of that id stays as it is, and is the owner's too from now on. Fails:
+    // kConflict when the digest is not stored, kQueueFull when count_max examples are kept.
+    [[nodiscard]] virtual Stored<void> add_example(
+        const Row& row, const std::string& owner, std::size_t count_max
+    ) = 0;
+    [[nodiscard]] virtual Stored<Row> find_example(
+        const std::string& id, const OwnerFilter& owner
+    ) = 0;
+    [[nodiscard]] virtual Stored<std::vector<Row>> list_examples(const OwnerFilter& owner) = 0;
+    // It is gone when it is nobody's any more, for everybody at once when no owner is named. Fails:
+    // kConflict while an unfinished job of the owner uses it.
+    [[nodiscard]] virtual Stored<void> erase_example(
+        const std::string& id, const OwnerFilter& owner
+    ) = 0;
 };
 
 }  // namespace modelsynth::server

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ enum class StoreErrorCode : std::uint8_t {
     kNotFound,
     kConflict,     // same key with another request, an illegal transition, a missing digest
     kQueueFull,    // as many jobs are queued as the caller allows
+    kOwnerFull,    // as many jobs of one owner are unfinished
     kLeaseLost,    // another holder now, or the job is gone
     kInvalid,      // a malformed cursor
     kCorrupt,      // a file is not what its digest says
@@ -38,9 +40,14 @@ struct ArtifactLink {
     std::string digest;
 };
 
+// Whose things a call means: those of one owner, the name of a key, or nothing for everybody's. Of
+// another owner's things a call speaks as of things that are not there.
+using OwnerFilter = std::optional<std::string>;
+
 // A job as it is submitted.
 struct NewJob {
     std::string id;
+    std::string owner = {};  // empty: nobody's, where there are no keys
     std::string solver;
     std::uint64_t seed = 0;
     std::int32_t priority = 0;
@@ -51,6 +58,21 @@ struct NewJob {
     std::optional<double> deadline_seconds;
     std::vector<ArtifactLink> artifacts = {};  // what it needs of others, kept with it from now on
     proto::UnixMillis created = 0;
+    std::uint64_t cost = 1;  // of running it, in any unit; what owners share is counted in it
+    std::uint64_t memory_bytes = 0;  // that running it takes
+    std::string traceparent = {};
+};
+
+// How much may be waiting already for a job to be taken.
+struct QueueLimits {
+    std::size_t queued_max = 0;                                            // jobs in all
+    std::size_t unfinished_max = std::numeric_limits<std::size_t>::max();  // of the job's owner
+};
+
+// What a job may be to be handed out.
+struct ClaimLimits {
+    std::uint64_t memory_bytes_max = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t cost_max = std::numeric_limits<std::uint64_t>::max();
 };
 
 struct Submitted {
@@ -79,6 +101,8 @@ struct Claim {
     Lease lease;
     proto::Job job;
     std::optional<double> deadline_seconds;
+    std::uint64_t cost = 0;
+    std::uint64_t memory_bytes = 0;
     double solved_seconds = 0;       // of earlier claims that did not end; counts to the deadline
     std::string solver_version;      // under which the job was last appended to; empty: never
     std::uint64_t version_base = 0;  // events up to this one tell of another model
@@ -129,6 +153,7 @@ struct EventPage {
 };
 
 struct JobQuery {
+    OwnerFilter owner = {};
     std::optional<proto::JobState> state;
     std::size_t limit = 20;
     std::string cursor;  // empty: from the newest

@@ -44,22 +44,36 @@ Job job_of(const Statement& row) {
     job.result = row.text(11);
     job.error = row.text(12);
     job.head = row.natural(14) - 1;
+    job.owner = row.text(15);
+    job.traceparent = row.text(16);
     return job;
 }
 
+std::uint64_t turn_of_next(Database& database, const std::string& owner, std::int32_t priority) {
+    Statement row = database.prepare(
+        "SELECT MAX((SELECT value FROM meta WHERE key = 'turn'), "
+        "COALESCE((SELECT MAX(turn + cost) FROM job WHERE state IN (0, 1) AND owner = ?1 AND "
+        "priority = ?2), 0))"
+    );
+    row.bind(std::string_view(owner)).bind(std::int64_t{priority}).step();
+    return row.natural(0);
+}
+
 std::uint64_t queue_position(Database& database, const std::string& id, UnixMillis now) {
-    const std::string effective = kEffectivePriority;
-    Statement own =
-        database.prepare("SELECT " + effective + ", ordinal FROM job WHERE id = ?2 AND state = 0");
+    const std::string level = kLevel;
+    const std::string queue = kQueue;
+    Statement own = database.prepare(
+        "SELECT " + level + ", turn, ordinal FROM " + queue + " WHERE id = ?2 AND state = 0"
+    );
     own.bind(now).bind(std::string_view(id));
     if (!own.step()) {
         return 0;
     }
     Statement before = database.prepare(
-        "SELECT COUNT(*) FROM job WHERE state = 0 AND (" + effective + " > ?2 OR (" + effective +
-        " = ?2 AND ordinal < ?3))"
+        "SELECT COUNT(*) FROM " + queue + " WHERE state = 0 AND (" + level + " > ?2 OR (" + level +
+        " = ?2 AND (turn < ?3 OR (turn = ?3 AND ordinal < ?4))))"
     );
-    before.bind(now).bind(own.integer(0)).bind(own.integer(1));
+    before.bind(now).bind(own.integer(0)).bind(own.integer(1)).bind(own.integer(2));
     before.step();
     return before.natural(0);
 }

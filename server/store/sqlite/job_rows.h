@@ -14,12 +14,18 @@ namespace modelsynth::server {
 // The columns that job_of() reads, and the job's place in the order of arrival after them.
 inline constexpr const char* kJobColumns =
     "id, state, solver, seed, created, started, finished, expires, blocks_done, blocks_total, "
-    "request, result, error, ordinal, next_seq";
+    "request, result, error, ordinal, next_seq, owner, traceparent";
 inline constexpr int kOrdinalColumn = 13;
 
-// A job that waited this long counts as one priority level higher, so that none starves. ?1 is
-// the time.
-inline constexpr const char* kEffectivePriority = "(priority + (?1 - created) / 30000)";
+// The order of claim(), in three parts. A flow is what an owner has of one priority; `turn` was
+// given at the submission, see turn_of_next().
+inline constexpr proto::UnixMillis kPatienceMs = 30'000;
+inline constexpr const char* kQueue =
+    "job LEFT JOIN flow ON flow.owner = job.owner AND flow.priority = job.priority";
+// The priority, one higher for each time of patience in which nothing of the flow was handed out
+// although there was this job to hand out. ?1 is the time.
+inline constexpr const char* kLevel =
+    "(job.priority + MAX(0, ?1 - MAX(job.created, COALESCE(flow.served, job.created))) / 30000)";
 
 [[nodiscard]] tl::unexpected<StoreError> failure(StoreErrorCode code, std::string message);
 [[nodiscard]] tl::unexpected<StoreError> no_job(const std::string& id);
@@ -27,6 +33,12 @@ inline constexpr const char* kEffectivePriority = "(priority + (?1 - created) / 
 
 // The job of a row of kJobColumns; without its place in the queue.
 [[nodiscard]] proto::Job job_of(const Statement& row);
+
+// The turn of the next job that comes in of a flow: where the flow's unfinished jobs end, and not
+// before the turn that is being served, since what was not asked for is not owed.
+[[nodiscard]] std::uint64_t turn_of_next(
+    Database& database, const std::string& owner, std::int32_t priority
+);
 
 // How many queued jobs go before this one, by the order of claim().
 [[nodiscard]] std::uint64_t queue_position(

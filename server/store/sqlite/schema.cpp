@@ -11,7 +11,7 @@ namespace {
 
 // The form of the tables is numbered; step i makes form i + 1 of form i, step 0 out of nothing. A
 // step that was released is not changed any more.
-constexpr std::array<const char*, 3> kSteps = {
+constexpr std::array<const char*, 4> kSteps = {
     R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value INTEGER NOT NULL) STRICT, WITHOUT ROWID;
 CREATE TABLE job (
@@ -80,6 +80,33 @@ CREATE TABLE checkpoint (
 ALTER TABLE job ADD COLUMN version_base INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE checkpoint DROP COLUMN blocks_accepted;
 ALTER TABLE checkpoint ADD COLUMN tally TEXT NOT NULL DEFAULT '';
+)sql",
+    R"sql(
+ALTER TABLE job ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN traceparent TEXT NOT NULL DEFAULT '';
+ALTER TABLE job ADD COLUMN cost INTEGER NOT NULL DEFAULT 1;
+ALTER TABLE job ADD COLUMN memory_bytes INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE job ADD COLUMN turn INTEGER NOT NULL DEFAULT 0;
+DROP INDEX job_key;
+CREATE UNIQUE INDEX job_key ON job (owner, idempotency_key) WHERE idempotency_key IS NOT NULL;
+DROP INDEX job_queue;
+CREATE INDEX job_queue ON job (owner, priority, turn, cost) WHERE state = 0;
+DROP INDEX job_running;
+CREATE INDEX job_running ON job (owner, priority, turn, cost) WHERE state = 1;
+CREATE INDEX job_owner ON job (owner, ordinal);
+CREATE TABLE flow (
+    owner TEXT NOT NULL,
+    priority INTEGER NOT NULL,
+    served INTEGER NOT NULL,
+    PRIMARY KEY (owner, priority)
+) STRICT, WITHOUT ROWID;
+INSERT INTO meta VALUES ('turn', 0);
+CREATE TABLE example_owner (
+    example_id TEXT NOT NULL REFERENCES example (id) ON DELETE CASCADE,
+    owner TEXT NOT NULL,
+    PRIMARY KEY (example_id, owner)
+) STRICT, WITHOUT ROWID;
+INSERT INTO example_owner SELECT id, '' FROM example;
 )sql"};
 
 // 0: the file is new.

@@ -37,9 +37,24 @@ void drop_checkpoint(Database& database, const std::string& id) {
     database.prepare("DELETE FROM checkpoint WHERE job_id = ?").bind(std::string_view(id)).run();
 }
 
+// Whose turn it is now, and that the job's flow had one.
+void keep_turn(Database& database, const std::string& id, UnixMillis now) {
+    database
+        .prepare(
+            "UPDATE meta SET value = MAX(value, (SELECT turn FROM job WHERE id = ?)) "
+            "WHERE key = 'turn'"
+        )
+        .bind(std::string_view(id))
+        .run();
+    database.prepare("INSERT OR REPLACE INTO flow SELECT owner, priority, ? FROM job WHERE id = ?")
+        .bind(now)
+        .bind(std::string_view(id))
+        .run();
+}
+
 }  // namespace
 
-Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now) {
+Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now, const ClaimLimits& limits) {
     return writer_->call<
         std::optional<Claim>>([&](Database& database) -> Stored<std::optional<Claim>> {
         Claim claim;
@@ -47,14 +62,22 @@ Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now) {
             Statement next = database.prepare(
                 std::string(
                     "SELECT id, token, deadline, solved_seconds, solver_version, "
-                    "version_base, fruitless_claims, next_seq FROM job WHERE state = 0 ORDER BY "
+                    "version_base, fruitless_claims, next_seq, cost, memory_bytes, created FROM "
                 ) +
-                kEffectivePriority + " DESC, ordinal LIMIT 1"
+                kQueue + " WHERE state = 0 ORDER BY " + kLevel + " DESC, turn, ordinal"
             );
             next.bind(now);
-            if (!next.step()) {
-                return std::optional<Claim>();
-            }
+            do {
+                if (!next.step()) {
+                    return std::optional<Claim>();
+                }
+                claim.cost = next.natural(8);
+                claim.memory_bytes = next.natural(9);
+                if (claim.cost <= limits.cost_max && claim.memory_bytes > limits.memory_bytes_max &&
+                    now - next.integer(10) >= kPatienceMs) {
+                    return std::optional<Claim>();
+                }
+            } while (claim.cost > limits.cost_max || claim.memory_bytes > limits.memory_bytes_max);
             claim.lease = {next.text(0), next.natural(1) + 1};
             if (!next.is_null(2)) {
                 claim.deadline_seconds = next.real(2);
@@ -74,6 +97,7 @@ Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now) {
             .bind(now)
             .bind(std::string_view(claim.lease.job_id))
             .run();
+        keep_turn(database, claim.lease.job_id, now);
         auto job = find_job(database, claim.lease.job_id);
         if (!job) {
             return tl::unexpected(std::move(job.error()));

@@ -7,12 +7,42 @@
 
 namespace modelsynth::server {
 
-Stored<void> SqliteStore::add_example(const Row& row, std::size_t count_max) {
+namespace {
+
+void add_owner(Database& database, const std::string& id, const std::string& owner) {
+    database.prepare("INSERT OR IGNORE INTO example_owner VALUES (?, ?)")
+        .bind(std::string_view(id))
+        .bind(std::string_view(owner))
+        .run();
+}
+
+// The example's digest, when it is there and the owner's.
+std::optional<std::string> digest_for(
+    Database& database, const std::string& id, const OwnerFilter& owner
+) {
+    Statement row = database.prepare(
+        std::string("SELECT digest FROM example WHERE id = ?") +
+        (owner ? " AND EXISTS (SELECT 1 FROM example_owner WHERE example_id = id AND owner = ?)"
+               : "")
+    );
+    row.bind(std::string_view(id));
+    if (owner) {
+        row.bind(std::string_view(*owner));
+    }
+    return row.step() ? std::optional(row.text(0)) : std::nullopt;
+}
+
+}  // namespace
+
+Stored<void> SqliteStore::add_example(
+    const Row& row, const std::string& owner, std::size_t count_max
+) {
     return writer_->call<void>([&](Database& database) -> Stored<void> {
         {
             Statement known = database.prepare("SELECT 1 FROM example WHERE id = ?");
             known.bind(std::string_view(row.id));
             if (known.step()) {
+                add_owner(database, row.id, owner);
                 return {};
             }
         }
@@ -34,25 +64,35 @@ Stored<void> SqliteStore::add_example(const Row& row, std::size_t count_max) {
             .bind(std::string_view(row.name))
             .bind(std::string_view(row.digest))
             .run();
+        add_owner(database, row.id, owner);
         return {};
     });
 }
 
-Stored<ExampleStore::Row> SqliteStore::find_example(const std::string& id) {
-    return with_reader<Row>([&id](Database& database) -> Stored<Row> {
-        Statement row = database.prepare("SELECT id, name, digest FROM example WHERE id = ?");
-        row.bind(std::string_view(id));
-        if (!row.step()) {
+Stored<ExampleStore::Row> SqliteStore::find_example(
+    const std::string& id, const OwnerFilter& owner
+) {
+    return with_reader<Row>([&](Database& database) -> Stored<Row> {
+        const auto digest = digest_for(database, id, owner);
+        if (!digest) {
             return failure(StoreErrorCode::kNotFound, "there is no example " + id);
         }
-        return Row{row.text(0), row.text(1), row.text(2)};
+        Statement row = database.prepare("SELECT name FROM example WHERE id = ?");
+        row.bind(std::string_view(id)).step();
+        return Row{id, row.text(0), *digest};
     });
 }
 
-Stored<std::vector<ExampleStore::Row>> SqliteStore::list_examples() {
-    return with_reader<std::vector<Row>>([](Database& database) -> Stored<std::vector<Row>> {
+Stored<std::vector<ExampleStore::Row>> SqliteStore::list_examples(const OwnerFilter& owner) {
+    return with_reader<std::vector<Row>>([&](Database& database) -> Stored<std::vector<Row>> {
         std::vector<Row> rows;
-        Statement found = database.prepare("SELECT id, name, digest FROM example ORDER BY id");
+        Statement found = database.prepare(
+            std::string("SELECT id, name, digest FROM example ") +
+            (owner ? "JOIN example_owner ON example_id = id AND owner = ? " : "") + "ORDER BY id"
+        );
+        if (owner) {
+            found.bind(std::string_view(*owner));
+        }
         while (found.step()) {
             rows.push_back({found.text(0), found.text(1), found.text(2)});
         }
@@ -60,22 +100,36 @@ Stored<std::vector<ExampleStore::Row>> SqliteStore::list_examples() {
     });
 }
 
-Stored<void> SqliteStore::erase_example(const std::string& id) {
+Stored<void> SqliteStore::erase_example(const std::string& id, const OwnerFilter& owner) {
     return writer_->call<void>([&](Database& database) -> Stored<void> {
-        Statement users =
-            database.prepare("SELECT 1 FROM job WHERE state IN (0, 1) AND example_id = ?");
+        const auto digest = digest_for(database, id, owner);
+        Statement users = database.prepare(
+            std::string("SELECT 1 FROM job WHERE state IN (0, 1) AND example_id = ?") +
+            (owner ? " AND owner = ?" : "")
+        );
         users.bind(std::string_view(id));
+        if (owner) {
+            users.bind(std::string_view(*owner));
+        }
+        // The job may be all that is left of an example.
         if (users.step()) {
             return failure(StoreErrorCode::kConflict, "an unfinished job uses the example");
         }
-        {
-            Statement row = database.prepare("SELECT digest FROM example WHERE id = ?");
-            row.bind(std::string_view(id));
-            if (!row.step()) {
-                return failure(StoreErrorCode::kNotFound, "there is no example " + id);
-            }
-            unlinked_digests_.push_back(row.text(0));
+        if (!digest) {
+            return failure(StoreErrorCode::kNotFound, "there is no example " + id);
         }
+        if (owner) {
+            database.prepare("DELETE FROM example_owner WHERE example_id = ? AND owner = ?")
+                .bind(std::string_view(id))
+                .bind(std::string_view(*owner))
+                .run();
+            Statement others = database.prepare("SELECT 1 FROM example_owner WHERE example_id = ?");
+            others.bind(std::string_view(id));
+            if (others.step()) {
+                return {};
+            }
+        }
+        unlinked_digests_.push_back(*digest);
         database.prepare("DELETE FROM example WHERE id = ?").bind(std::string_view(id)).run();
         return {};
     });

@@ -19,13 +19,17 @@ namespace {
 
 // The job of an idempotency key, or nothing; a conflict when the key was used for another request.
 Stored<std::optional<Job>> job_of_key(
-    Database& database, const std::string& key, const std::string& request_hash
+    Database& database,
+    const std::string& owner,
+    const std::string& key,
+    const std::string& request_hash
 ) {
     std::string id;
     {
-        Statement known =
-            database.prepare("SELECT id, request_hash FROM job WHERE idempotency_key = ?");
-        known.bind(std::string_view(key));
+        Statement known = database.prepare(
+            "SELECT id, request_hash FROM job WHERE owner = ? AND idempotency_key = ?"
+        );
+        known.bind(std::string_view(owner)).bind(std::string_view(key));
         if (!known.step()) {
             return std::optional<Job>();
         }
@@ -44,18 +48,18 @@ Stored<std::optional<Job>> job_of_key(
 }  // namespace
 
 Stored<std::optional<Job>> SqliteStore::find_key(
-    const std::string& idempotency_key, const std::string& request_hash
+    const std::string& owner, const std::string& idempotency_key, const std::string& request_hash
 ) {
     using Found = std::optional<Job>;
     return with_reader<Found>([&](Database& database) -> Stored<Found> {
-        return job_of_key(database, idempotency_key, request_hash);
+        return job_of_key(database, owner, idempotency_key, request_hash);
     });
 }
 
-Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) {
+Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limits) {
     return writer_->call<Submitted>([&](Database& database) -> Stored<Submitted> {
         if (!job.idempotency_key.empty()) {
-            auto known = job_of_key(database, job.idempotency_key, job.request_hash);
+            auto known = job_of_key(database, job.owner, job.idempotency_key, job.request_hash);
             if (!known) {
                 return tl::unexpected(std::move(known.error()));
             }
@@ -66,18 +70,32 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) 
         {
             Statement queued = database.prepare("SELECT COUNT(*) FROM job WHERE state = 0");
             queued.step();
-            if (queued.natural(0) >= queue_max) {
+            if (queued.natural(0) >= limits.queued_max) {
                 return failure(
                     StoreErrorCode::kQueueFull,
-                    std::to_string(queue_max) + " jobs are waiting, as many as are taken"
+                    std::to_string(limits.queued_max) + " jobs are waiting, as many as are taken"
                 );
             }
         }
+        {
+            Statement unfinished =
+                database.prepare("SELECT COUNT(*) FROM job WHERE state IN (0, 1) AND owner = ?");
+            unfinished.bind(std::string_view(job.owner)).step();
+            if (unfinished.natural(0) >= limits.unfinished_max) {
+                return failure(
+                    StoreErrorCode::kOwnerFull,
+                    std::to_string(limits.unfinished_max) +
+                        " jobs of the key are unfinished, as many as it may have"
+                );
+            }
+        }
+        const std::uint64_t turn = turn_of_next(database, job.owner, job.priority);
         database
             .prepare(
                 "INSERT INTO job (id, solver, seed, priority, request, example_id, "
-                "request_hash, idempotency_key, state, deadline, created) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, 0, ?, ?)"
+                "request_hash, idempotency_key, state, deadline, created, owner, cost, "
+                "memory_bytes, turn, traceparent) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, 0, ?, ?, ?, ?, ?, ?, ?)"
             )
             .bind(std::string_view(job.id))
             .bind(std::string_view(job.solver))
@@ -92,6 +110,11 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, std::size_t queue_max) 
             )
             .bind(job.deadline_seconds)
             .bind(job.created)
+            .bind(std::string_view(job.owner))
+            .bind(job.cost)
+            .bind(job.memory_bytes)
+            .bind(turn)
+            .bind(std::string_view(job.traceparent))
             .run();
         if (auto linked = link_artifacts(database, job.id, job.artifacts); !linked) {
             return tl::unexpected(std::move(linked.error()));
@@ -121,15 +144,19 @@ Stored<JobPage> SqliteStore::list(const JobQuery& query) {
         }
     }
     return with_reader<JobPage>([&](Database& database) -> Stored<JobPage> {
-        const std::string filter = query.state ? " AND state = ?3" : "";
         Statement rows = database.prepare(
-            std::string("SELECT ") + kJobColumns + " FROM job WHERE ordinal < ?1" + filter +
-            " ORDER BY ordinal DESC LIMIT ?2"
+            std::string("SELECT ") + kJobColumns + " FROM job WHERE ordinal < ?" +
+            (query.state ? " AND state = ?" : "") + (query.owner ? " AND owner = ?" : "") +
+            " ORDER BY ordinal DESC LIMIT ?"
         );
-        rows.bind(before).bind(std::uint64_t{query.limit + 1});
+        rows.bind(before);
         if (query.state) {
             rows.bind(static_cast<std::int64_t>(*query.state));
         }
+        if (query.owner) {
+            rows.bind(std::string_view(*query.owner));
+        }
+        rows.bind(std::uint64_t{query.limit + 1});
         JobPage page;
         std::int64_t last = 0;
         while (rows.step()) {

@@ -39,14 +39,18 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     [[nodiscard]] ArtifactStore& artifacts() { return *artifacts_; }
 
     // JobStore
-    [[nodiscard]] Stored<Submitted> submit(const NewJob& job, std::size_t queue_max) override;
+    [[nodiscard]] Stored<Submitted> submit(const NewJob& job, const QueueLimits& limits) override;
     [[nodiscard]] Stored<std::optional<proto::Job>> find_key(
-        const std::string& idempotency_key, const std::string& request_hash
+        const std::string& owner,
+        const std::string& idempotency_key,
+        const std::string& request_hash
     ) override;
     [[nodiscard]] Stored<proto::Job> find(const std::string& id) override;
     [[nodiscard]] Stored<JobPage> list(const JobQuery& query) override;
     [[nodiscard]] Stored<std::size_t> queued_count() override;
-    [[nodiscard]] Stored<std::optional<Claim>> claim(proto::UnixMillis now) override;
+    [[nodiscard]] Stored<std::optional<Claim>> claim(
+        proto::UnixMillis now, const ClaimLimits& limits
+    ) override;
     void append(
         const Lease& lease,
         std::vector<NewEvent> events,
@@ -72,10 +76,14 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     ) override;
 
     // ExampleStore
-    [[nodiscard]] Stored<void> add_example(const Row& row, std::size_t count_max) override;
-    [[nodiscard]] Stored<Row> find_example(const std::string& id) override;
-    [[nodiscard]] Stored<std::vector<Row>> list_examples() override;
-    [[nodiscard]] Stored<void> erase_example(const std::string& id) override;
+    [[nodiscard]] Stored<void> add_example(
+        const Row& row, const std::string& owner, std::size_t count_max
+    ) override;
+    [[nodiscard]] Stored<Row> find_example(const std::string& id, const OwnerFilter& owner)
+        override;
+    [[nodiscard]] Stored<std::vector<Row>> list_examples(const OwnerFilter& owner) override;
+    [[nodiscard]] Stored<void> erase_example(const std::string& id, const OwnerFilter& owner)
+        override;
 
   private:
     class Listener;

@@ -49,7 +49,7 @@ class SqliteStoreFiles : public testing::Test {
     void keep(SqliteStore& store, const std::string& content) const {
         const auto pin = value(store.artifacts().put(content));
         value(store.submit(new_job("a"), kNoLimit));
-        const auto claimed = value(store.claim(kNow));
+        const auto claimed = value(store.claim(kNow, {}));
         value(store.finish(claimed->lease, succeeded({{"x", pin->digest()}})));
     }
 
@@ -86,17 +86,46 @@ TEST_F(SqliteStoreFiles, ADirectoryThatCannotBeMadeIsAnError) {
 
 TEST_F(SqliteStoreFiles, TablesOfANewerFormAreRefused) {
     value(value(open())->submit(new_job("a"), kNoLimit));
-    execute("UPDATE meta SET value = 4 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 5 WHERE key = 'schema'");
     for (int i = 0; i < 2; ++i) {
         const auto opened = open();
         ASSERT_FALSE(opened);
         EXPECT_EQ(opened.error().code, StoreErrorCode::kConflict);
         EXPECT_NE(opened.error().message.find("newer version"), std::string::npos);
-        EXPECT_NE(opened.error().message.find("form 4"), std::string::npos);
+        EXPECT_NE(opened.error().message.find("form 5"), std::string::npos);
     }
     // Nothing was changed in it.
-    execute("UPDATE meta SET value = 3 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 4 WHERE key = 'schema'");
     EXPECT_TRUE(value(open())->find("a"));
+}
+
+// From the newest form back to the third, which knew no owners.
+constexpr const char* kUndoFourthForm =
+    "DROP INDEX job_key; DROP INDEX job_queue; DROP INDEX job_running; DROP INDEX job_owner;"
+    "DROP TABLE flow; DROP TABLE example_owner; DELETE FROM meta WHERE key = 'turn';"
+    "ALTER TABLE job DROP COLUMN owner; ALTER TABLE job DROP COLUMN traceparent;"
+    "ALTER TABLE job DROP COLUMN cost; ALTER TABLE job DROP COLUMN memory_bytes;"
+    "ALTER TABLE job DROP COLUMN turn;"
+    "CREATE UNIQUE INDEX job_key ON job (idempotency_key) WHERE idempotency_key IS NOT NULL;"
+    "CREATE INDEX job_queue ON job (ordinal) WHERE state = 0;"
+    "CREATE INDEX job_running ON job (ordinal) WHERE state = 1;"
+    "UPDATE meta SET value = 3 WHERE key = 'schema';";
+
+TEST_F(SqliteStoreFiles, TablesOfTheThirdFormAreNobodys) {
+    {
+        const auto store = value(open());
+        value(store->submit(keyed_job("a", "key", "hash"), kNoLimit));
+        value(store->submit(new_job("b"), kNoLimit));
+        const auto pin = value(store->artifacts().put("text"));
+        value(store->add_example({"x", "", pin->digest()}, "", 10));
+    }
+    execute(kUndoFourthForm);
+    const auto store = value(open());
+    EXPECT_EQ(value(store->find_key("", "key", "hash"))->id, "a");
+    EXPECT_TRUE(store->find_example("x", ""));
+    EXPECT_EQ(value(store->find("b")).owner, "");
+    EXPECT_EQ(value(store->claim(kNow, {}))->lease.job_id, "a");
+    EXPECT_EQ(value(store->claim(kNow, {}))->lease.job_id, "b");
 }
 
 TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
@@ -104,8 +133,9 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         const auto store = value(open());
         keep(*store, "content");
         value(store->submit(new_job("b"), kNoLimit));
-        value(append(*store, value(store->claim(kNow))->lease, {block_event(0)}));
+        value(append(*store, value(store->claim(kNow, {}))->lease, {block_event(0)}));
     }
+    execute(kUndoFourthForm);
     execute(
         "ALTER TABLE job DROP COLUMN version_base; DROP TABLE checkpoint;"
         "UPDATE meta SET value = 1 WHERE key = 'schema'"
@@ -115,7 +145,7 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         EXPECT_EQ(value(store->find("a")).state, proto::JobState::kSucceeded);
         EXPECT_EQ(value(store->artifacts().load(value(store->artifact("a", "x")))), "content");
         EXPECT_EQ(whole_log(*store, "b").size(), 2U);
-        const auto claimed = value(store->claim(kNow));
+        const auto claimed = value(store->claim(kNow, {}));
         ASSERT_TRUE(claimed);
         EXPECT_EQ(claimed->job.blocks_done, 1U);
         EXPECT_EQ(claimed->version_base, 0U);
@@ -133,14 +163,15 @@ TEST_F(SqliteStoreFiles, TablesOfTheSecondFormKeepTheirCheckpoints) {
         value(store->submit(new_job("a"), kNoLimit));
         Progress progress = progress_of(1);
         progress.checkpoint = JobCheckpoint{0, 1, "1", "labels"};
-        value(append(*store, value(store->claim(kNow))->lease, {block_event(0)}, progress));
+        value(append(*store, value(store->claim(kNow, {}))->lease, {block_event(0)}, progress));
     }
+    execute(kUndoFourthForm);
     execute(
         "ALTER TABLE job DROP COLUMN version_base; ALTER TABLE checkpoint DROP COLUMN tally;"
         "ALTER TABLE checkpoint ADD COLUMN blocks_accepted INTEGER NOT NULL DEFAULT 1;"
         "UPDATE meta SET value = 2 WHERE key = 'schema'"
     );
-    const auto claimed = value(value(open())->claim(kNow));
+    const auto claimed = value(value(open())->claim(kNow, {}));
     ASSERT_TRUE(claimed && claimed->checkpoint);
     EXPECT_EQ(claimed->checkpoint->labels, "labels");
     EXPECT_EQ(claimed->checkpoint->tally, "");  // older solvers counted in another way

@@ -101,8 +101,12 @@ TEST_P(ClaimContract, AJobThatWaitedThirtySecondsCountsOneLevelHigher) {
     for (const Case& test : cases) {
         SCOPED_TRACE(number);
         const std::string name = std::to_string(number++);
-        submit(job_at("first" + name, 0, kNow));
-        submit(job_at("second" + name, test.priority, kNow + test.later_by));
+        // An owner of its own, of whom nothing was handed out before.
+        NewJob first = job_at("first" + name, 0, kNow);
+        NewJob second = job_at("second" + name, test.priority, kNow + test.later_by);
+        first.owner = second.owner = name;
+        submit(first);
+        submit(second);
         between_steps();
         const auto one = claim(kNow + test.now);
         const auto two = claim(kNow + test.now);
@@ -111,6 +115,100 @@ TEST_P(ClaimContract, AJobThatWaitedThirtySecondsCountsOneLevelHigher) {
         value(jobs().finish(one->lease, failed()));
         value(jobs().finish(two->lease, failed()));
     }
+}
+
+TEST_P(ClaimContract, OwnersTakeTurnsWhateverEachHasWaiting) {
+    for (int i = 0; i < 50; ++i) {
+        NewJob job = new_job("flood" + std::to_string(i));
+        job.owner = "a";
+        submit(job);
+    }
+    between_steps();
+    std::vector<std::string> order;
+    for (int i = 0; i < 6; ++i) {
+        if (i == 3) {
+            // Comes when all the others have waited for long.
+            NewJob late = job_at("late", 0, kNow + 600'000);
+            late.owner = "b";
+            EXPECT_EQ(submit(late).job.queue_position, 0U);
+        }
+        order.push_back(claim(kNow + 600'000)->lease.job_id);
+    }
+    EXPECT_EQ(
+        order, (std::vector<std::string>{"flood0", "flood1", "flood2", "late", "flood3", "flood4"})
+    );
+}
+
+TEST_P(ClaimContract, OwnersShareByWhatTheirJobsCost) {
+    for (int i = 0; i < 40; ++i) {
+        NewJob job = new_job((i < 20 ? "dear" : "cheap") + std::to_string(i));
+        job.owner = i < 20 ? "a" : "b";
+        job.cost = i < 20 ? 300 : 100;
+        submit(job);
+    }
+    between_steps();
+    std::size_t cheap_count = 0;
+    for (int i = 0; i < 24; ++i) {
+        cheap_count += claim()->lease.job_id.starts_with("cheap") ? 1U : 0U;
+    }
+    // Three for one.
+    EXPECT_EQ(cheap_count, 18U);
+}
+
+TEST_P(ClaimContract, WhoAsksForNothingIsOwedNothing) {
+    const auto give = [this](const std::string& id, const std::string& owner) {
+        NewJob job = new_job(id);
+        job.owner = owner;
+        submit(job);
+    };
+    give("first", "idle");
+    EXPECT_EQ(claim()->lease.job_id, "first");
+    for (int i = 0; i < 20; ++i) {
+        give("busy" + std::to_string(i), "busy");
+    }
+    between_steps();
+    for (int i = 0; i < 10; ++i) {
+        claim();
+    }
+    give("back0", "idle");
+    give("back1", "idle");
+    give("back2", "idle");
+    std::vector<std::string> order;
+    for (int i = 0; i < 4; ++i) {
+        order.push_back(claim()->lease.job_id.substr(0, 4));
+    }
+    EXPECT_EQ(std::count(order.begin(), order.end(), "back"), 2);
+}
+
+TEST_P(ClaimContract, WhatCostsTooMuchIsPassedBy) {
+    NewJob dear = new_job("dear", 5);
+    dear.cost = 101;
+    submit(dear);
+    NewJob cheap = new_job("cheap");
+    cheap.cost = 100;
+    submit(cheap);
+    between_steps();
+    ClaimLimits limits;
+    limits.cost_max = 100;
+    EXPECT_EQ(value(jobs().claim(kNow + 60'000, limits))->lease.job_id, "cheap");
+    limits.cost_max = 101;
+    EXPECT_EQ(value(jobs().claim(kNow + 60'000, limits))->lease.job_id, "dear");
+}
+
+TEST_P(ClaimContract, WhatDoesNotFitIsPassedByForAWhileAndThenWaitedFor) {
+    NewJob large = job_at("large", 5, kNow);
+    large.memory_bytes = 1000;
+    submit(large);
+    submit(job_at("small0", 0, kNow));
+    submit(job_at("small1", 0, kNow));
+    between_steps();
+    ClaimLimits limits;
+    limits.memory_bytes_max = 999;
+    EXPECT_EQ(value(jobs().claim(kNow + 29'999, limits))->lease.job_id, "small0");
+    EXPECT_FALSE(value(jobs().claim(kNow + 30'000, limits)));
+    limits.memory_bytes_max = 1000;
+    EXPECT_EQ(value(jobs().claim(kNow + 30'000, limits))->lease.job_id, "large");
+    EXPECT_EQ(value(jobs().claim(kNow + 30'000, limits))->lease.job_id, "small1");
 }
 
 TEST_P(ClaimContract, ClaimersGetEachJobOnce) {
@@ -126,7 +224,7 @@ TEST_P(ClaimContract, ClaimersGetEachJobOnce) {
     std::mutex mutex;
     std::vector<std::string> handed_out;
     run_together(kClaimers, [&](std::size_t) {
-        while (const auto claimed = value(jobs().claim(kNow))) {
+        while (const auto claimed = value(jobs().claim(kNow, {}))) {
             if (!is_own(claimed->lease.job_id)) {
                 value(jobs().release(claimed->lease, 0));
                 return;

@@ -36,13 +36,13 @@ struct Told {
 Told run_script(SqliteStore& store) {
     Told told;
     for (const char* id : {"a", "b"}) {
-        if (told.went_well(store.submit(keyed_job(id, std::string("key of ") + id, id), 10))) {
+        if (told.went_well(store.submit(keyed_job(id, std::string("key of ") + id, id), {10}))) {
             told.submitted.emplace_back(id);
         }
     }
     told.is_cancelled = std::count(told.submitted.begin(), told.submitted.end(), "b") > 0 &&
                         told.went_well(store.cancel("b", kNow));
-    const auto claimed = store.claim(kNow);
+    const auto claimed = store.claim(kNow, {});
     if (!told.went_well(claimed) || !*claimed) {
         return told;
     }
@@ -64,7 +64,7 @@ Told run_script(SqliteStore& store) {
 void expect_kept(SqliteStore& store, const Told& told) {
     for (const std::string& id : told.submitted) {
         ASSERT_TRUE(store.find(id)) << id;
-        EXPECT_EQ(value(store.find_key("key of " + id, id))->id, id);
+        EXPECT_EQ(value(store.find_key("", "key of " + id, id))->id, id);
     }
     if (told.is_cancelled) {
         EXPECT_EQ(value(store.find("b")).state, proto::JobState::kCancelled);
@@ -100,8 +100,8 @@ void expect_kept(SqliteStore& store, const Told& told) {
 
 // Nothing is left of the fault: whatever state the jobs are in, they can be brought to an end.
 void expect_usable(SqliteStore& store) {
-    value(store.submit(new_job("after"), 10));
-    while (const auto claimed = value(store.claim(kNow))) {
+    value(store.submit(new_job("after"), {10}));
+    while (const auto claimed = value(store.claim(kNow, {}))) {
         value(append(store, claimed->lease, {block_event(9)}));
         value(store.finish(claimed->lease, failed()));
     }
@@ -242,11 +242,12 @@ TEST(StoreDiskFaults, AJobThatCannotBeWrittenIsNotThere) {
     const TemporaryDirectory directory;
     FaultyVfs disk;
     const auto store = value(SqliteStore::open(directory.path(), kRetentionMs));
-    value(store->submit(new_job("before"), 10));
+    value(store->submit(new_job("before"), {10}));
     disk.fail(FaultyVfs::Call::kWrite, 1, SQLITE_FULL, kForLong);
     for (int i = 0; i < 3; ++i) {
         EXPECT_EQ(
-            error_of(store->submit(keyed_job("a", "key", "hash"), 10)), StoreErrorCode::kUnavailable
+            error_of(store->submit(keyed_job("a", "key", "hash"), {10})),
+            StoreErrorCode::kUnavailable
         );
         // What is there stays readable.
         EXPECT_EQ(error_of(store->find("a")), StoreErrorCode::kNotFound);
@@ -254,7 +255,7 @@ TEST(StoreDiskFaults, AJobThatCannotBeWrittenIsNotThere) {
         EXPECT_EQ(whole_log(*store, "before").size(), 1U);
     }
     disk.heal();
-    const Submitted submitted = value(store->submit(keyed_job("a", "key", "hash"), 10));
+    const Submitted submitted = value(store->submit(keyed_job("a", "key", "hash"), {10}));
     EXPECT_FALSE(submitted.replayed);
     EXPECT_EQ(submitted.job.queue_position, 1U);
 }

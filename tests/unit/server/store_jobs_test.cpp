@@ -26,7 +26,7 @@ TEST_P(JobContract, SubmitMakesTheJobItsKeyAndItsFirstEventTogether) {
     EXPECT_EQ(found.created, kNow);
     EXPECT_EQ(found.head, 1U);
     EXPECT_FALSE(found.started || found.finished || found.expires);
-    EXPECT_EQ(value(jobs().find_key("key", "hash"))->id, "a");
+    EXPECT_EQ(value(jobs().find_key("", "key", "hash"))->id, "a");
     EXPECT_EQ(
         tuples_of(log("a")), (std::vector<EventTuple>{{1, "queued", R"({"position":0})", kNow}})
     );
@@ -39,7 +39,7 @@ TEST_P(JobContract, AnUnknownJobIsNotFound) {
     EXPECT_EQ(error_of(jobs().artifact("none", "labels")), StoreErrorCode::kNotFound);
     EXPECT_EQ(error_of(events().read("none", 0, 10)), StoreErrorCode::kNotFound);
     EXPECT_FALSE(value(jobs().checkpoint("none")));
-    EXPECT_FALSE(value(jobs().find_key("none", "hash")));
+    EXPECT_FALSE(value(jobs().find_key("", "none", "hash")));
 }
 
 TEST_P(JobContract, AKnownKeyWithTheSameHashAnswersWithItsJob) {
@@ -57,7 +57,7 @@ TEST_P(JobContract, AKnownKeyWithAnotherHashIsAConflict) {
     between_steps();
     const NewJob other = keyed_job("b", "key", "another hash");
     EXPECT_EQ(error_of(jobs().submit(other, kNoLimit)), StoreErrorCode::kConflict);
-    EXPECT_EQ(error_of(jobs().find_key("key", "another hash")), StoreErrorCode::kConflict);
+    EXPECT_EQ(error_of(jobs().find_key("", "key", "another hash")), StoreErrorCode::kConflict);
     EXPECT_EQ(listed(), std::vector<std::string>{"a"});
 }
 
@@ -72,7 +72,7 @@ TEST_P(JobContract, AJobThatNeedsWhatIsNotStoredIsNotThere) {
     EXPECT_EQ(error_of(jobs().find("a")), StoreErrorCode::kNotFound);
     EXPECT_EQ(error_of(jobs().artifact("a", "one")), StoreErrorCode::kNotFound);
     EXPECT_EQ(error_of(events().read("a", 0, 10)), StoreErrorCode::kNotFound);
-    EXPECT_FALSE(value(jobs().find_key("key", "hash")));
+    EXPECT_FALSE(value(jobs().find_key("", "key", "hash")));
 }
 
 TEST_P(JobContract, AKnownKeyAnswersWhateverTheJobWouldNeed) {
@@ -105,9 +105,9 @@ TEST_P(JobContract, KeysThatDifferAfterANulByteAreDifferent) {
     submit(keyed_job("a", one, "hash"));
     between_steps();
     EXPECT_FALSE(submit(keyed_job("b", two, "hash")).replayed);
-    EXPECT_EQ(value(jobs().find_key(one, "hash"))->id, "a");
-    EXPECT_EQ(value(jobs().find_key(two, "hash"))->id, "b");
-    EXPECT_FALSE(value(jobs().find_key("key", "hash")));
+    EXPECT_EQ(value(jobs().find_key("", one, "hash"))->id, "a");
+    EXPECT_EQ(value(jobs().find_key("", two, "hash"))->id, "b");
+    EXPECT_FALSE(value(jobs().find_key("", "key", "hash")));
 }
 
 TEST_P(JobContract, AFullQueueTakesNoJobButAnswersForAKnownKey) {
@@ -116,7 +116,7 @@ TEST_P(JobContract, AFullQueueTakesNoJobButAnswersForAKnownKey) {
     submit(new_job("b"));
     between_steps();
     EXPECT_EQ(value(jobs().queued_count()), before + 2);
-    const std::size_t full = before + 2;
+    const QueueLimits full = {before + 2};
     EXPECT_EQ(error_of(jobs().submit(new_job("c"), full)), StoreErrorCode::kQueueFull);
     EXPECT_TRUE(value(jobs().submit(keyed_job("d", "key", "hash"), full)).replayed);
     EXPECT_EQ(listed(), (std::vector<std::string>{"b", "a"}));
@@ -125,11 +125,60 @@ TEST_P(JobContract, AFullQueueTakesNoJobButAnswersForAKnownKey) {
     EXPECT_FALSE(value(jobs().submit(new_job("c"), full)).replayed);
 }
 
+TEST_P(JobContract, AnOwnerHasSoManyUnfinishedJobsAndNoMore) {
+    const auto give = [this](const std::string& id, const std::string& owner) {
+        NewJob job = new_job(id);
+        job.owner = owner;
+        return error_of(jobs().submit(job, {1'000'000, 2}));
+    };
+    EXPECT_FALSE(give("a1", "a"));
+    const auto running = claim();
+    ASSERT_TRUE(running);
+    EXPECT_FALSE(give("a2", "a"));
+    between_steps();
+    EXPECT_EQ(give("a3", "a"), StoreErrorCode::kOwnerFull);
+    EXPECT_FALSE(give("b1", "b"));
+    value(jobs().cancel("a2", kNow));
+    EXPECT_FALSE(give("a3", "a"));
+}
+
+TEST_P(JobContract, AKeyIsItsOwnersAlone) {
+    for (const char* owner : {"a", "b"}) {
+        NewJob job = keyed_job(std::string("job of ") + owner, "key", "hash");
+        job.owner = owner;
+        EXPECT_FALSE(submit(job).replayed);
+    }
+    between_steps();
+    EXPECT_EQ(value(jobs().find_key("a", "key", "hash"))->id, "job of a");
+    EXPECT_EQ(value(jobs().find_key("b", "key", "hash"))->id, "job of b");
+    EXPECT_FALSE(value(jobs().find_key("", "key", "hash")));
+}
+
+TEST_P(JobContract, AListIsOfOneOwnerOrOfAll) {
+    for (int i = 0; i < 5; ++i) {
+        NewJob job = new_job("job" + std::to_string(i));
+        job.owner = i % 2 == 0 ? "even" : "odd";
+        submit(job);
+    }
+    between_steps();
+    JobQuery query{"even", std::nullopt, 2, ""};
+    const JobPage first = value(jobs().list(query));
+    ASSERT_TRUE(first.next);
+    query.cursor = *first.next;
+    const JobPage second = value(jobs().list(query));
+    EXPECT_FALSE(second.next);
+    ASSERT_EQ(first.jobs.size(), 2U);
+    ASSERT_EQ(second.jobs.size(), 1U);
+    EXPECT_EQ(first.jobs[0].id, "job4");
+    EXPECT_EQ(second.jobs[0].id, "job0");
+    EXPECT_EQ(second.jobs[0].owner, "even");
+}
+
 TEST_P(JobContract, FiftyThreadsWithOneKeyMakeOneJob) {
     std::atomic<int> made = 0;
     std::vector<std::string> answers(50);
     run_together(answers.size(), [&](std::size_t i) {
-        const auto answer = jobs().submit(keyed_job("job" + std::to_string(i), "key", "h"), 500);
+        const auto answer = jobs().submit(keyed_job("job" + std::to_string(i), "key", "h"), {500});
         if (answer) {
             answers[i] = answer->job.id;
             made += answer->replayed ? 0 : 1;
@@ -187,7 +236,7 @@ TEST_P(JobContract, PagesStayRightWhileJobsComeAndGo) {
         submit(new_job("old" + std::to_string(i)));
     }
     std::vector<std::string> seen;
-    JobQuery query{std::nullopt, 3, ""};
+    JobQuery query{{}, std::nullopt, 3, ""};
     for (int page_index = 0;; ++page_index) {
         const JobPage page = value(jobs().list(query));
         for (const proto::Job& job : page.jobs) {
@@ -309,7 +358,7 @@ TEST_P(JobContract, CancelAndFinishAtTheSameTimeMakeOneTerminalEvent) {
     });
     run_together(kPairs, [&](std::size_t thread) {
         for (std::size_t i = thread; i < kRaces; i += kPairs) {
-            leases[i] = value(jobs().claim(kNow))->lease;
+            leases[i] = value(jobs().claim(kNow, {}))->lease;
         }
     });
     std::atomic<int> finished_well = 0;
@@ -343,7 +392,7 @@ TEST_P(JobContract, CancelAndClaimAtTheSameTimeLeaveNoJobThatRunsOn) {
         for (std::size_t i = thread / 2; i < kRaces; i += 4) {
             if (thread % 2 == 0) {
                 value(jobs().cancel("job" + std::to_string(i), kNow + 3));
-            } else if (const auto claimed = value(jobs().claim(kNow));
+            } else if (const auto claimed = value(jobs().claim(kNow, {}));
                        claimed && is_own(claimed->lease.job_id)) {
                 value(jobs().finish(claimed->lease, failed()));
             } else if (claimed) {
@@ -370,7 +419,7 @@ TEST_P(JobContract, AnErasedJobIsForgottenWithItsKey) {
     EXPECT_EQ(error_of(jobs().erase("a")), StoreErrorCode::kNotFound);
     EXPECT_EQ(error_of(events().read("a", 0, 10)), StoreErrorCode::kNotFound);
     EXPECT_EQ(listed(), std::vector<std::string>{"b"});
-    EXPECT_FALSE(value(jobs().find_key("key", "hash")));
+    EXPECT_FALSE(value(jobs().find_key("", "key", "hash")));
     EXPECT_FALSE(submit(keyed_job("a", "key", "another hash")).replayed);
     EXPECT_EQ(log("a").size(), 1U);
 }
@@ -491,7 +540,7 @@ TEST_P(JobContract, HardTextSurvives) {
     between_steps();
     EXPECT_EQ(find(job.id).request, job.request);
     EXPECT_EQ(find(job.id).solver, job.solver);
-    EXPECT_EQ(value(jobs().find_key(job.idempotency_key, job.request_hash))->id, job.id);
+    EXPECT_EQ(value(jobs().find_key("", job.idempotency_key, job.request_hash))->id, job.id);
     EXPECT_EQ(error_of(jobs().find("a")), StoreErrorCode::kNotFound);
 
     const auto claimed = claim();

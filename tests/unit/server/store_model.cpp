@@ -33,8 +33,17 @@ StoreModel::Row* StoreModel::held(const Lease& lease) {
     return found == rows_.end() ? nullptr : &*found;
 }
 
-std::int64_t StoreModel::effective_priority(const Row& row, proto::UnixMillis now) {
-    return row.submitted.priority + (now - row.submitted.created) / 30'000;
+std::int64_t StoreModel::level(const NewJob& job, proto::UnixMillis now) const {
+    const auto served = served_.find(flow_of(job));
+    const proto::UnixMillis since =
+        served == served_.end() ? job.created : std::max(job.created, served->second);
+    return job.priority + std::max<proto::UnixMillis>(0, now - since) / 30'000;
+}
+
+// Of two that are queued; `one` came before the other.
+bool StoreModel::goes_before(const Row& one, const Row& other, proto::UnixMillis now) const {
+    const std::int64_t difference = level(one.submitted, now) - level(other.submitted, now);
+    return difference > 0 || (difference == 0 && one.turn <= other.turn);
 }
 
 void StoreModel::end(Row& row, JobState state, NewEvent event) {
@@ -44,55 +53,88 @@ void StoreModel::end(Row& row, JobState state, NewEvent event) {
     append_event(row, event);
 }
 
-Stored<Submitted> StoreModel::submit(const NewJob& job, std::size_t queue_max) {
+Stored<Submitted> StoreModel::submit(const NewJob& job, const QueueLimits& limits) {
     std::size_t queued_count = 0;
+    std::size_t unfinished_count = 0;
+    Row row;
+    row.submitted = job;
+    row.turn = turn_;
+    for (const Row& earlier : rows_) {
+        if (!proto::is_ended(earlier.job.state) && earlier.submitted.owner == job.owner) {
+            ++unfinished_count;
+            if (earlier.submitted.priority == job.priority) {
+                row.turn = std::max(row.turn, earlier.turn + earlier.submitted.cost);
+            }
+        }
+    }
     std::uint64_t position = 0;
-    for (const Row& row : rows_) {
-        if (!job.idempotency_key.empty() && row.submitted.idempotency_key == job.idempotency_key) {
-            if (row.submitted.request_hash != job.request_hash) {
+    for (const Row& earlier : rows_) {
+        if (!job.idempotency_key.empty() && earlier.submitted.owner == job.owner &&
+            earlier.submitted.idempotency_key == job.idempotency_key) {
+            if (earlier.submitted.request_hash != job.request_hash) {
                 return failure(StoreErrorCode::kConflict);
             }
-            return Submitted{row.job, true};
+            return Submitted{earlier.job, true};
         }
-        if (row.job.state == JobState::kQueued) {
+        if (earlier.job.state == JobState::kQueued) {
             ++queued_count;
-            if (effective_priority(row, job.created) >= job.priority) {
-                ++position;
-            }
+            position += goes_before(earlier, row, job.created) ? 1U : 0U;
         }
     }
-    if (queued_count >= queue_max) {
+    if (queued_count >= limits.queued_max) {
         return failure(StoreErrorCode::kQueueFull);
     }
-    Row row;
+    if (unfinished_count >= limits.unfinished_max) {
+        return failure(StoreErrorCode::kOwnerFull);
+    }
     for (const ArtifactLink& artifact : job.artifacts) {
         if (!stored_digests_.contains(artifact.digest)) {
             return failure(StoreErrorCode::kConflict);
         }
         row.artifacts.insert({artifact.name, artifact.digest});
     }
-    row.submitted = job;
     row.job.id = job.id;
     row.job.solver = job.solver;
     row.job.seed = job.seed;
     row.job.request = job.request;
     row.job.created = job.created;
+    row.job.owner = job.owner;
+    row.job.traceparent = job.traceparent;
     append_event(row, {"queued", proto::queued_fields(position), job.created});
     rows_.push_back(row);
     return Submitted{row.job, false};
 }
 
-std::optional<Claim> StoreModel::claim(proto::UnixMillis now) {
-    Row* best = nullptr;
+std::optional<Claim> StoreModel::claim(proto::UnixMillis now, const ClaimLimits& limits) {
+    std::vector<Row*> queue;
     for (Row& row : rows_) {
-        if (row.job.state == JobState::kQueued &&
-            (best == nullptr || effective_priority(row, now) > effective_priority(*best, now))) {
-            best = &row;
+        if (row.job.state == JobState::kQueued) {
+            queue.push_back(&row);
+        }
+    }
+    std::stable_sort(queue.begin(), queue.end(), [this, now](const Row* one, const Row* other) {
+        const std::int64_t difference = level(one->submitted, now) - level(other->submitted, now);
+        return difference > 0 || (difference == 0 && one->turn < other->turn);
+    });
+    Row* best = nullptr;
+    for (Row* row : queue) {
+        const NewJob& job = row->submitted;
+        if (job.cost > limits.cost_max) {
+            continue;
+        }
+        if (job.memory_bytes <= limits.memory_bytes_max) {
+            best = row;
+            break;
+        }
+        if (now - job.created >= 30'000) {
+            break;  // waits until there is room, and all others with it
         }
     }
     if (best == nullptr) {
         return std::nullopt;
     }
+    turn_ = std::max(turn_, best->turn);
+    served_[flow_of(best->submitted)] = now;
     best->job.state = JobState::kRunning;
     best->job.started = best->job.started.value_or(now);
     ++best->token;
@@ -100,6 +142,8 @@ std::optional<Claim> StoreModel::claim(proto::UnixMillis now) {
     claim.lease = {best->job.id, best->token};
     claim.job = best->job;
     claim.deadline_seconds = best->submitted.deadline_seconds;
+    claim.cost = best->submitted.cost;
+    claim.memory_bytes = best->submitted.memory_bytes;
     claim.solved_seconds = best->solved_seconds;
     claim.solver_version = best->solver_version;
     claim.version_base = best->version_base;

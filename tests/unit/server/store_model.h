@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace modelsynth::server {
@@ -18,6 +19,7 @@ class StoreModel {
     struct Row {
         proto::Job job;
         NewJob submitted;
+        std::uint64_t turn = 0;
         bool cancel_requested = false;
         std::uint64_t token = 0;
         std::uint32_t fruitless_claims = 0;
@@ -32,8 +34,8 @@ class StoreModel {
     StoreModel(std::set<std::string> stored_digests, proto::UnixMillis retention_ms)
         : stored_digests_(std::move(stored_digests)), retention_ms_(retention_ms) {}
 
-    [[nodiscard]] Stored<Submitted> submit(const NewJob& job, std::size_t queue_max);
-    [[nodiscard]] std::optional<Claim> claim(proto::UnixMillis now);
+    [[nodiscard]] Stored<Submitted> submit(const NewJob& job, const QueueLimits& limits);
+    [[nodiscard]] std::optional<Claim> claim(proto::UnixMillis now, const ClaimLimits& limits);
     [[nodiscard]] Stored<std::uint64_t> append(
         const Lease& lease, const std::vector<NewEvent>& events, const Progress& progress
     );
@@ -51,12 +53,20 @@ class StoreModel {
 
   private:
     Row* held(const Lease& lease);
-    static std::int64_t effective_priority(const Row& row, proto::UnixMillis now);
+    // Owner and priority.
+    using Flow = std::pair<std::string, std::int32_t>;
+
+    static Flow flow_of(const NewJob& job) { return {job.owner, job.priority}; }
+
+    [[nodiscard]] std::int64_t level(const NewJob& job, proto::UnixMillis now) const;
+    [[nodiscard]] bool goes_before(const Row& one, const Row& other, proto::UnixMillis now) const;
     void end(Row& row, proto::JobState state, NewEvent event);
 
     std::set<std::string> stored_digests_;
     proto::UnixMillis retention_ms_;
     std::vector<Row> rows_;
+    std::map<Flow, proto::UnixMillis> served_;  // when it was last
+    std::uint64_t turn_ = 0;                    // that is being served
 };
 
 }  // namespace modelsynth::server

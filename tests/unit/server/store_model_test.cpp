@@ -58,7 +58,8 @@ std::string text_of(const std::optional<Claim>& claim) {
         text << claim->lease.token << ' ' << text_of(claim->job) << ' '
              << claim->deadline_seconds.value_or(-1) << ' ' << claim->solved_seconds << ' '
              << claim->solver_version << ' ' << claim->version_base << ' ' << claim->head << ' '
-             << claim->fruitless_claims << ' ' << text_of(claim->checkpoint);
+             << claim->fruitless_claims << ' ' << claim->cost << ' ' << claim->memory_bytes << ' '
+             << text_of(claim->checkpoint);
     }
     return text.str();
 }
@@ -132,7 +133,7 @@ class Comparison {
             compare(*row);
         }
         std::vector<std::string> listed;
-        JobQuery query{std::nullopt, 1 + below(20), ""};
+        JobQuery query{{}, std::nullopt, 1 + below(20), ""};
         for (;;) {
             const JobPage page = value(store_.jobs().list(query));
             for (const proto::Job& job : page.jobs) {
@@ -156,7 +157,7 @@ class Comparison {
         std::set<std::string> digests;
         for (const char* content : {"one", "two"}) {
             const auto pin = value(store_.artifacts().put(content));
-            value(store_.examples().add_example({content, content, pin->digest()}, 2));
+            value(store_.examples().add_example({content, content, pin->digest()}, "", 2));
             digests.insert(pin->digest());
         }
         return digests;
@@ -199,12 +200,22 @@ class Comparison {
                 job.artifacts.push_back({name, any_digest()});
             }
         }
-        EXPECT_EQ(answer_of(store_.jobs().submit(job, 15)), answer_of(model_.submit(job, 15)));
+        job.owner = std::string(1, static_cast<char>('a' + below(3)));
+        job.cost = 1 + below(10);
+        job.memory_bytes = below(10);
+        const QueueLimits limits = {15, 4 + below(12)};
+        EXPECT_EQ(
+            answer_of(store_.jobs().submit(job, limits)), answer_of(model_.submit(job, limits))
+        );
     }
 
     void claim() {
-        const auto claimed = value(store_.jobs().claim(now_));
-        EXPECT_EQ(text_of(claimed), text_of(model_.claim(now_)));
+        ClaimLimits limits;
+        if (below(2) == 0) {
+            limits = {below(10), 1 + below(10)};
+        }
+        const auto claimed = value(store_.jobs().claim(now_, limits));
+        EXPECT_EQ(text_of(claimed), text_of(model_.claim(now_, limits)));
         if (claimed) {
             leases_.push_back(claimed->lease);
         }

@@ -29,6 +29,8 @@ std::ostream& operator<<(std::ostream& out, StoreErrorCode code) {
             return out << "kConflict";
         case StoreErrorCode::kQueueFull:
             return out << "kQueueFull";
+        case StoreErrorCode::kOwnerFull:
+            return out << "kOwnerFull";
         case StoreErrorCode::kLeaseLost:
             return out << "kLeaseLost";
         case StoreErrorCode::kInvalid:
@@ -189,7 +191,7 @@ void StoreSuite::settle() {
 }
 
 std::optional<Claim> StoreSuite::claim(proto::UnixMillis now) {
-    auto claim = value(jobs().claim(now));
+    auto claim = value(jobs().claim(now, {}));
     if (claim && !is_own(claim->lease.job_id)) {
         value(jobs().release(claim->lease, 0));
         return std::nullopt;
@@ -210,7 +212,7 @@ std::vector<std::string> StoreSuite::listed(
     std::optional<proto::JobState> state, std::size_t limit
 ) {
     std::vector<std::string> ids;
-    JobQuery query{state, limit, ""};
+    JobQuery query{{}, state, limit, ""};
     for (;;) {
         const JobPage page = value(jobs().list(query));
         EXPECT_LE(page.jobs.size(), limit);
@@ -242,7 +244,7 @@ void StoreSuite::add_others(std::size_t count) {
     });
     run_together(kThreads, [this, count](std::size_t thread) {
         for (std::size_t i = thread; i < count * 3 / 4; i += kThreads) {
-            const auto claimed = value(jobs().claim(kNow));
+            const auto claimed = value(jobs().claim(kNow, {}));
             value(append(jobs(), claimed->lease, {block_event(0)}));
             if (i % 3 == 0) {
                 value(jobs().finish(claimed->lease, failed()));

@@ -27,7 +27,7 @@ namespace modelsynth::server {
 // A time for what is submitted, claimed and ended; nothing in the tests is later than the clock.
 inline constexpr proto::UnixMillis kNow = 1'000'000;
 inline constexpr proto::UnixMillis kRetentionMs = 50'000;  // a factory's stores are opened with it
-inline constexpr std::size_t kNoLimit = 1'000'000;
+inline constexpr QueueLimits kNoLimit = {1'000'000};
 
 // A store as the tests see it, whatever is behind it.
 class StoreUnderTest {

@@ -36,7 +36,7 @@ class WorkerOnAnEarlierLog : public testing::Test {
     }
 
     Claim claim() {
-        auto claim = value(store_.jobs().claim(kNow));
+        auto claim = value(store_.jobs().claim(kNow, {}));
         if (!claim) {
             throw std::runtime_error("no job is queued");
         }
