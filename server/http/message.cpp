@@ -71,7 +71,7 @@ Response problem_response(const proto::Problem& problem, const Request& request)
     }
     Response response = {
         problem.status, {{"Content-Type", "application/problem+json"}}, proto::to_json(placed)};
-    if (problem.status == 503) {
+    if (problem.status == 503 || problem.status == 429) {
         response.headers.emplace_back("Retry-After", "2");
     }
     return response;

@@ -4,6 +4,9 @@
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
 #include "server/store/artifact_names.h"
+#include "solver/registry/estimate.h"
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +33,9 @@ Parsed<T> parsed(Stored<T> stored) {
     }
 }
 
+// What a job of no labels costs, in labels: it is read, logged, kept and sent all the same.
+constexpr std::uint64_t kJobCost = 1000;
+
 const char* profile_name(GlbProfile profile) {
     switch (profile) {
         case GlbProfile::kNodes:
@@ -40,6 +46,19 @@ const char* profile_name(GlbProfile profile) {
             return "merged";
     }
     return "nodes";
+}
+
+CapacityLimits capacity_of(const JobServiceConfig& config) {
+    CapacityLimits limits;
+    limits.memory_bytes = config.memory_bytes_max;
+    if (limits.memory_bytes == 0) {
+        limits.memory_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                              static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE)) / 4 * 3;
+    }
+    // What costs nothing is the least that a job costs.
+    limits.large_cost = kJobCost + config.large_sites;
+    limits.large_jobs = std::max<std::size_t>(1, config.workers - 1);
+    return limits;
 }
 
 bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
@@ -59,7 +78,8 @@ JobService::JobService(
       events_(events),
       artifacts_(artifacts),
       log_(std::move(log)),
-      examples_(examples, artifacts, config_.limits, config.examples_max) {
+      examples_(examples, artifacts, config_.limits, config.examples_max),
+      capacity_(capacity_of(config)) {
     for (std::size_t i = 0; i < config_.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
     }
@@ -87,7 +107,7 @@ void JobService::work(const std::stop_token& stop) {
             seen = submissions_;
         }
         expire_now_and_then();
-        const auto claim = jobs_.claim(proto::now_millis(), {});
+        const auto claim = capacity_.claim(jobs_, proto::now_millis());
         if (claim && *claim) {
             // A job that is alone takes the workers that have nothing to do to help, as far as
             // there are processors for them.
@@ -95,6 +115,7 @@ void JobService::work(const std::stop_token& stop) {
                 config_.workers / ++jobs_in_hand_, std::max(1U, std::thread::hardware_concurrency())
             );
             run_claim(context, **claim, static_cast<std::uint32_t>(threads));
+            capacity_.give_back(**claim);
             --jobs_in_hand_;
             continue;
         }
@@ -153,7 +174,18 @@ Parsed<Submitted> JobService::submit(
     if (!request) {
         return tl::unexpected(std::move(request.error()));
     }
+    const Estimate need = estimate(request->task, request->alternatives.value_or(1));
+    if (need.memory_bytes > capacity_.limits().memory_bytes) {
+        return tl::unexpected(make_problem(
+            "too-large",
+            "the job needs about " + std::to_string(need.memory_bytes) +
+                " bytes of memory; the limit memory_bytes_max is " +
+                std::to_string(capacity_.limits().memory_bytes)
+        ));
+    }
     NewJob job;
+    job.cost = kJobCost + need.sites;
+    job.memory_bytes = need.memory_bytes;
     job.created = proto::now_millis();
     job.id = make_job_id(job.created);
     job.owner = caller.owner;

@@ -5,6 +5,7 @@
 #include "proto/limits.h"
 #include "proto/problem.h"
 #include "server/jobs/caller.h"
+#include "server/jobs/capacity.h"
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_inputs.h"
@@ -34,6 +35,11 @@ struct JobServiceConfig {
     std::size_t workers = 2;
     std::size_t queue_max = 1000;
     std::size_t examples_max = 1000;
+    // Jobs run as long as what they are thought to need has room in it; 0: three quarters of the
+    // machine's memory.
+    std::uint64_t memory_bytes_max = 0;
+    // A job that chooses more labels is large, and one worker is kept for those that are not.
+    std::uint64_t large_sites = 500'000;
     proto::RequestLimits limits;
 };
 
@@ -151,6 +157,7 @@ class JobService {
     ExampleAnalyses analyses_;
     LiveJobs live_;
     RunningJobs running_;
+    Capacity capacity_;
     Preparations preparations_;
     std::atomic<bool> draining_ = false;
     std::atomic<proto::UnixMillis> last_expiry_ = 0;

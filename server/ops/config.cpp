@@ -73,6 +73,18 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     app.add_option("--queue-max", config.jobs.queue_max, "Jobs that may wait")
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
+    app.add_option(
+           "--memory-max",
+           config.jobs.memory_bytes_max,
+           "Bytes that running jobs may need; 0: three quarters of the machine's"
+    )
+        ->capture_default_str();
+    app.add_option(
+           "--large-sites",
+           config.jobs.large_sites,
+           "Jobs of more labels are large: one worker is kept for the others"
+    )
+        ->capture_default_str();
     app.add_option("--examples-max", config.jobs.examples_max, "Uploaded examples that are kept")
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
