@@ -2,6 +2,7 @@
 #include "server/http/server.h"
 #include "server/jobs/job_service.h"
 #include "server/ops/config.h"
+#include "server/ops/limits_document.h"
 #include "server/ops/logging.h"
 #include "server/store/sqlite/sqlite_store.h"
 
@@ -21,7 +22,7 @@ int serve(const Config& config) {
         return 1;
     }
     JobService service(config.jobs, **store, **store, **store, (*store)->artifacts(), log);
-    Api api(service, config.http.limits);
+    Api api(service, config.http.limits, make_documents(limits_document(config)));
     HttpServer server(config.http, api, log);
     const std::uint16_t port = server.listen();
     const bool is_v6 = config.http.address.find(':') != std::string::npos;

@@ -26,7 +26,7 @@ struct Route {
     BodyKind body = BodyKind::kOther;
 };
 
-constexpr std::array<Route, 24> kRoutes = {
+constexpr std::array<Route, 29> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -50,11 +50,19 @@ constexpr std::array<Route, 24> kRoutes = {
      {"GET", "/v1/solvers/{}", get_solver},
      {"GET", "/healthz", healthz},
      {"GET", "/readyz", readyz},
-     {"GET", "/problems/{}", get_problem}}};
+     {"GET", "/problems/{}", get_problem},
+     {"GET", "/v1/limits", get_limits},
+     {"GET", "/openapi.json", get_openapi},
+     {"GET", "/asyncapi.json", get_asyncapi},
+     {"GET", "/docs", get_docs_page},
+     {"GET", "/", get_start_page}}};
 
 // Whether the path is the route's; the id that it carries goes to `id`.
 bool matches(const char* route, const std::vector<std::string>& path, std::string& id) {
     std::string_view rest = route;
+    if (rest == "/") {
+        return path.empty();
+    }
     std::string found;
     for (const std::string& segment : path) {
         if (rest.empty()) {
@@ -170,7 +178,7 @@ Response Api::handle(const Request& request) {
     if (match.route == nullptr) {
         return *check_head(request);
     }
-    return match.route->handler({service_, request, std::move(match.id)});
+    return match.route->handler({service_, request, std::move(match.id), documents_});
 }
 
 Response Api::answer_with_job(

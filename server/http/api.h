@@ -1,11 +1,13 @@
 #pragma once
 
+#include "server/http/documents.h"
 #include "server/http/message.h"
 #include "server/jobs/job_service.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -28,7 +30,8 @@ struct HttpLimits {
 // block. Thread-safe.
 class Api {
   public:
-    Api(JobService& service, const HttpLimits& limits) : service_(service), limits_(limits) {}
+    Api(JobService& service, const HttpLimits& limits, Documents documents)
+        : service_(service), limits_(limits), documents_(std::move(documents)) {}
 
     // What can be refused before the body is read: unknown paths, wrong methods, bodies that are
     // too long or of another type. Nothing when the body is wanted.
@@ -49,6 +52,7 @@ class Api {
   private:
     JobService& service_;
     HttpLimits limits_;
+    Documents documents_;
 };
 
 }  // namespace modelsynth::server
