@@ -129,6 +129,9 @@ OrderedJson problem_response(const std::vector<ProblemKind>& kinds) {
     if (kinds.front().status == 503) {
         response["headers"]["Retry-After"] = {{"$ref", "#/components/headers/RetryAfter"}};
     }
+    if (kinds.front().status == 415) {
+        response["headers"]["Accept"] = {{"$ref", "#/components/headers/Accept"}};
+    }
     response["content"]["application/problem+json"]["schema"] = {
         {"allOf", OrderedJson::array({{{"$ref", std::string(kSchemaPlace) + "Problem"}}})},
         {"properties", {{"type", {{"enum", std::move(types)}}}}}};

@@ -58,14 +58,15 @@ std::string policy_sources(std::string_view page, const std::string& element) {
     return sources;
 }
 
-Documents::Document document(std::string text) {
-    const std::string etag = "\"" + sha256_hex(text) + "\"";
-    return {std::move(text), etag};
+Documents::Document make_document(std::string text) {
+    std::string etag = "\"";
+    etag.append(sha256_hex(text)).append("\"");
+    return {std::move(text), std::move(etag)};
 }
 
 // Its own scripts and styles may run, and reach this server; all else is forbidden.
-Documents::Document page(std::string html) {
-    Documents::Document made = document(std::move(html));
+Documents::Document make_page(std::string html) {
+    Documents::Document made = make_document(std::move(html));
     made.policy = "default-src 'none'; script-src" + policy_sources(made.text, "script") +
                   "; style-src" + policy_sources(made.text, "style") +
                   "; connect-src 'self'; img-src 'self' data:; base-uri 'none'; form-action 'none'"
@@ -78,14 +79,14 @@ Documents::Document page(std::string html) {
 Documents make_documents(std::string limits) {
     Documents documents;
     documents.limits = std::move(limits);
-    documents.openapi = document(proto::openapi_json());
-    documents.asyncapi = document(proto::asyncapi_json());
-    documents.docs = page(with_document(
+    documents.openapi = make_document(proto::openapi_json());
+    documents.asyncapi = make_document(proto::asyncapi_json());
+    documents.docs = make_page(with_document(
         with_document(kDocsPage, "openapi", documents.openapi.text),
         "asyncapi",
         documents.asyncapi.text
     ));
-    documents.start = page(kStartPage);
+    documents.start = make_page(kStartPage);
     return documents;
 }
 

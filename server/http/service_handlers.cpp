@@ -65,7 +65,8 @@ Response respond_with_document(
     representation.etag = document.etag;
     representation.content = document.text;
     Response response = respond_with(call.request, std::move(representation));
-    if (!document.policy.empty()) {
+    const bool has_content = response.status == 200 || response.status == 206;
+    if (has_content && !document.policy.empty()) {
         response.headers.emplace_back("Content-Security-Policy", document.policy);
     }
     return response;
