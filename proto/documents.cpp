@@ -5,6 +5,7 @@
 #include "proto/schemas.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <set>
@@ -118,6 +119,15 @@ class SchemaPlacer {
     std::vector<std::string> wanted_;
 };
 
+struct HeaderOfStatus {
+    int status;
+    const char* name;
+    const char* component;
+};
+
+constexpr std::array<HeaderOfStatus, 2> kHeadersOfProblems = {
+    {{415, "Accept", "Accept"}, {503, "Retry-After", "RetryAfter"}}};
+
 OrderedJson problem_response(const std::vector<ProblemKind>& kinds) {
     std::string description;
     OrderedJson types = OrderedJson::array();
@@ -126,11 +136,11 @@ OrderedJson problem_response(const std::vector<ProblemKind>& kinds) {
         types.push_back("/problems/" + std::string(kind.name));
     }
     OrderedJson response = {{"description", description + "."}};
-    if (kinds.front().status == 503) {
-        response["headers"]["Retry-After"] = {{"$ref", "#/components/headers/RetryAfter"}};
-    }
-    if (kinds.front().status == 415) {
-        response["headers"]["Accept"] = {{"$ref", "#/components/headers/Accept"}};
+    for (const HeaderOfStatus& header : kHeadersOfProblems) {
+        if (header.status == kinds.front().status) {
+            response["headers"][header.name] = {
+                {"$ref", std::string("#/components/headers/") + header.component}};
+        }
     }
     response["content"]["application/problem+json"]["schema"] = {
         {"allOf", OrderedJson::array({{{"$ref", std::string(kSchemaPlace) + "Problem"}}})},
@@ -190,9 +200,9 @@ OrderedJson head_of(const OrderedJson& get, const OrderedJson& components) {
 std::string openapi_json() {
     OrderedJson document = OrderedJson::parse(kOpenApiSkeleton);
     for (OrderedJson& path : document["paths"]) {
-        for (const char* method : {"get", "post", "delete"}) {
-            if (path.contains(method)) {
-                add_problems(path[method]);
+        for (OrderedJson& operation : path) {
+            if (operation.contains("operationId")) {  // not the path's parameters
+                add_problems(operation);
             }
         }
         // A handshake has no HEAD.

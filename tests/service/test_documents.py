@@ -404,7 +404,7 @@ def test_limits_are_those_of_the_running_server(make_server):
     assert "model_cells_max is 5000" in problem["errors"][0]["detail"]
 
 
-def test_limits_hold_at_their_edges(server):
+def test_limits_hold_at_their_edges(server, openapi):
     limits = {name: limit["value"]
               for name, limit in server.get("/v1/limits").json()["limits"].items()}
     asked = server.request("POST", "/v1/jobs", job_request(), headers={"Prefer": "wait=1000"})
@@ -412,6 +412,9 @@ def test_limits_hold_at_their_edges(server):
     most = limits["page_items_max"]
     assert server.get(f"/v1/jobs?limit={most}").status == 200
     assert server.get(f"/v1/jobs?limit={most + 1}").status == 422
+    limit = next(parameter["schema"] for parameter in openapi.at("paths", "/v1/jobs", "get")[
+        "parameters"] if parameter["name"] == "limit")
+    assert (limit["maximum"], limit["default"]) == (most, limits["page_items_default"])
     for name, maximum in (("seed", limits["seed_max"]), ("deadline", limits["deadline_seconds_max"]),
                           ("alternatives", limits["alternatives_max"])):
         refused = server.request("POST", "/v1/jobs", job_request(**{name: maximum + 1}))
