@@ -10,7 +10,7 @@ packages=(
   libcadical-dev libeigen3-dev
 )
 if [ "${1:-build}" = test ]; then
-  packages+=(libgtest-dev python3 python3-pytest python3-jsonschema
+  packages+=(libgtest-dev curl python3 python3-pytest python3-jsonschema
              clang-format)
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi

@@ -56,7 +56,7 @@ OrderedJson alternatives_schema() {
 }
 
 OrderedJson discrete_document() {
-    const OrderedJson parameters = OrderedJson::parse(kDiscreteParametersSchema);
+    const OrderedJson parameters = OrderedJson::parse(schema_text("discrete.parameters"));
     return {
         {"name", "discrete"},
         {"title", "Discrete model synthesis"},
@@ -65,13 +65,15 @@ OrderedJson discrete_document() {
          "(Merrell 2009, chapter 3)."},
         {"parameters", parameters},
         {"from",
-         from_schema(kDiscreteFromSchema, {"box", "cells", "mask", "voxels", "cell"}, parameters)},
+         from_schema(
+             schema_text("discrete.from"), {"box", "cells", "mask", "voxels", "cell"}, parameters
+         )},
         {"alternatives", alternatives_schema()},
         {"urls", {{"self", "/v1/solvers/discrete"}}}};
 }
 
 OrderedJson continuous_document() {
-    const OrderedJson parameters = OrderedJson::parse(kContinuousParametersSchema);
+    const OrderedJson parameters = OrderedJson::parse(schema_text("continuous.parameters"));
     return {
         {"name", "continuous"},
         {"title", "Continuous model synthesis"},
@@ -80,7 +82,9 @@ OrderedJson continuous_document() {
          "model stands so in the example (Merrell 2009, chapter 4)."},
         {"parameters", parameters},
         {"from",
-         from_schema(kContinuousFromSchema, {"point", "box", "mask", "voxels"}, parameters)},
+         from_schema(
+             schema_text("continuous.from"), {"point", "box", "mask", "voxels"}, parameters
+         )},
         {"alternatives", alternatives_schema()},
         {"urls", {{"self", "/v1/solvers/continuous"}}}};
 }

@@ -3,6 +3,7 @@
 #include "server/http/server.h"
 #include "server/jobs/job_service.h"
 #include "server/ops/config.h"
+#include "server/ops/limits_document.h"
 #include "server/ops/logging.h"
 #include "server/store/sqlite/sqlite_store.h"
 
@@ -27,7 +28,7 @@ int serve(const Config& config) {
         std::fprintf(stderr, "modelsynthd: %s\n", loaded.error().c_str());
         return 1;
     }
-    Api api(service, admission, config.http.limits);
+    Api api(service, admission, config.http.limits, make_documents(limits_document(config)));
     HttpServer server(config.http, api, log);
     const std::uint16_t port = server.listen();
     const bool is_v6 = config.http.address.find(':') != std::string::npos;

@@ -27,7 +27,8 @@ struct Route {
 };
 
 // Health, and what there is to read before one has a key.
-constexpr std::array<const char*, 3> kOpen = {"/healthz", "/readyz", "/problems/{}"};
+constexpr std::array<const char*, 7> kOpen = {
+    "/healthz", "/readyz", "/problems/{}", "/openapi.json", "/asyncapi.json", "/docs", "/"};
 
 // What a browser opens without being able to send a key.
 constexpr std::array<const char*, 2> kStreams = {"/v1/jobs/{}/events", "/v1/jobs/{}/stream"};
@@ -50,7 +51,7 @@ Need need_of(const Route& route) {
     return need;
 }
 
-constexpr std::array<Route, 25> kRoutes = {
+constexpr std::array<Route, 30> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -75,11 +76,19 @@ constexpr std::array<Route, 25> kRoutes = {
      {"POST", "/v1/tickets", give_ticket},
      {"GET", "/healthz", healthz},
      {"GET", "/readyz", readyz},
-     {"GET", "/problems/{}", get_problem}}};
+     {"GET", "/problems/{}", get_problem},
+     {"GET", "/v1/limits", get_limits},
+     {"GET", "/openapi.json", get_openapi},
+     {"GET", "/asyncapi.json", get_asyncapi},
+     {"GET", "/docs", get_docs_page},
+     {"GET", "/", get_start_page}}};
 
 // Whether the path is the route's; the id that it carries goes to `id`.
 bool matches(const char* route, const std::vector<std::string>& path, std::string& id) {
     std::string_view rest = route;
+    if (rest == "/") {
+        return path.empty();
+    }
     std::string found;
     for (const std::string& segment : path) {
         if (rest.empty()) {
@@ -205,7 +214,7 @@ Response Api::handle(const Request& request) {
             return problem_response(job.error(), request);
         }
     }
-    return match.route->handler({service_, admission_, request, std::move(match.id)});
+    return match.route->handler({service_, admission_, request, std::move(match.id), documents_});
 }
 
 Response Api::answer_with_job(

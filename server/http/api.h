@@ -1,12 +1,14 @@
 #pragma once
 
 #include "server/http/admission.h"
+#include "server/http/documents.h"
 #include "server/http/message.h"
 #include "server/jobs/job_service.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -29,8 +31,11 @@ struct HttpLimits {
 // block. Thread-safe.
 class Api {
   public:
-    Api(JobService& service, Admission& admission, const HttpLimits& limits)
-        : service_(service), admission_(admission), limits_(limits) {}
+    Api(JobService& service, Admission& admission, const HttpLimits& limits, Documents documents)
+        : service_(service),
+          admission_(admission),
+          limits_(limits),
+          documents_(std::move(documents)) {}
 
     // What can be refused before the body is read: unknown paths, wrong methods, callers who may
     // not ask, bodies that are too long or of another type. Nothing when the body is wanted; then
@@ -53,6 +58,7 @@ class Api {
     JobService& service_;
     Admission& admission_;
     HttpLimits limits_;
+    Documents documents_;
 };
 
 }  // namespace modelsynth::server

@@ -2,14 +2,23 @@
 
 #include "proto/problem.h"
 #include "server/http/admission.h"
+#include "server/http/documents.h"
 #include "server/http/message.h"
 #include "server/jobs/job_service.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 // A function per method and resource of the contract. All may block; all are thread-safe.
 
 namespace modelsynth::server {
+
+// Of one page of GET /v1/jobs.
+inline constexpr std::size_t kJobsPerPageDefault = 20;
+inline constexpr std::size_t kJobsPerPageMax = 100;
+// How long the answer to a cancellation waits for the job's end.
+inline constexpr std::uint32_t kCancelWaitSecondsMax = 1;
 
 // A request in the hands of its handler.
 struct Call {
@@ -17,6 +26,7 @@ struct Call {
     Admission& admission;
     const Request& request;
     std::string id;  // the {id} of the path, if it has one
+    const Documents& documents;
 };
 
 [[nodiscard]] Response refuse(const Call& call, const proto::Problem& problem);
@@ -53,5 +63,10 @@ struct Call {
 [[nodiscard]] Response healthz(const Call& call);
 [[nodiscard]] Response readyz(const Call& call);
 [[nodiscard]] Response get_problem(const Call& call);
+[[nodiscard]] Response get_limits(const Call& call);
+[[nodiscard]] Response get_openapi(const Call& call);
+[[nodiscard]] Response get_asyncapi(const Call& call);
+[[nodiscard]] Response get_docs_page(const Call& call);
+[[nodiscard]] Response get_start_page(const Call& call);
 
 }  // namespace modelsynth::server

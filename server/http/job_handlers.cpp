@@ -52,7 +52,7 @@ Response list_jobs(const Call& call) {
             );
         }
     }
-    const auto limit = query_number(call.request, "limit", 20, 1, 100);
+    const auto limit = query_number(call.request, "limit", kJobsPerPageDefault, 1, kJobsPerPageMax);
     if (!limit) {
         return refuse(call, limit.error());
     }
@@ -81,7 +81,7 @@ Response cancel_job(const Call& call) {
     }
     Response response = json_response(200, proto::to_json(*job));
     if (!proto::is_ended(job->state)) {
-        response.wait = WaitForJob{call.id, std::chrono::seconds(1), 200, 200};
+        response.wait = WaitForJob{call.id, std::chrono::seconds(kCancelWaitSecondsMax), 200, 200};
     }
     return response;
 }

@@ -80,6 +80,9 @@ Response problem_response(const proto::Problem& problem, const Request& request)
 bool parse_target(std::string_view target, Request& request) {
     if (target.starts_with("http://")) {  // the absolute form names the same resource
         const std::size_t slash = target.find('/', 7);
+        if (slash == 7 || target.size() == 7) {
+            return false;  // of no host
+        }
         target = slash == std::string_view::npos ? std::string_view("/") : target.substr(slash);
     }
     request.target = std::string(target);

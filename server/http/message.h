@@ -83,7 +83,7 @@ struct Response {
 [[nodiscard]] Response problem_response(const proto::Problem& problem, const Request& request);
 
 // Splits a request target into path and query and decodes both. False when it is malformed: neither
-// in origin form nor in absolute form, a broken escape, a NUL byte.
+// in origin form nor in absolute form with a host, a broken escape, a NUL byte.
 [[nodiscard]] bool parse_target(std::string_view target, Request& request);
 
 }  // namespace modelsynth::server

@@ -101,7 +101,7 @@ Parsed<std::uint64_t> query_number(
 }
 
 std::optional<std::uint64_t> preferred_wait(const Request& request) {
-    constexpr std::uint64_t kMost = 60;
+    constexpr std::uint64_t kMost = kPreferredWaitSecondsMax;
     for (const std::string& part : list_items(request.header_list("prefer").value_or(""))) {
         const std::string preference = lower_case(part.substr(0, part.find(';')));
         if (!preference.starts_with("wait=")) {
@@ -122,10 +122,12 @@ Parsed<std::string> idempotency_key(const Request& request) {
     }
     const bool printable =
         std::all_of(key.begin(), key.end(), [](char c) { return c > 0x20 && c < 0x7F; });
-    if (key.size() > 255 || !printable ||
+    if (key.size() > kIdempotencyKeyCharactersMax || !printable ||
         (key.empty() && request.header("idempotency-key").has_value())) {
         return tl::unexpected(make_problem(
-            "malformed-request", "an Idempotency-Key has 1 to 255 visible ASCII characters"
+            "malformed-request",
+            "an Idempotency-Key has 1 to " + std::to_string(kIdempotencyKeyCharactersMax) +
+                " visible ASCII characters"
         ));
     }
     return key;

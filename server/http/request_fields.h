@@ -3,6 +3,7 @@
 #include "proto/problem.h"
 #include "server/http/message.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -13,6 +14,9 @@
 // What handlers read from query strings and headers.
 
 namespace modelsynth::server {
+
+inline constexpr std::uint64_t kPreferredWaitSecondsMax = 60;
+inline constexpr std::size_t kIdempotencyKeyCharactersMax = 255;
 
 // Digits and nothing else.
 [[nodiscard]] std::optional<std::uint64_t> parse_number(const std::string& text);

@@ -1,6 +1,7 @@
 #include "proto/example_codec.h"
 #include "proto/job.h"
 #include "server/http/handlers.h"
+#include "server/http/representation.h"
 #include "server/http/request_fields.h"
 
 #include <utility>
@@ -63,6 +64,43 @@ Response get_problem(const Call& call) {
         }
     }
     return refuse(call, make_problem("not-found", "there is no such problem"));
+}
+
+Response get_limits(const Call& call) { return json_response(200, call.documents.limits); }
+
+namespace {
+
+Response respond_with_document(
+    const Call& call, const Documents::Document& document, const char* media_type
+) {
+    Representation representation;
+    representation.media_type = media_type;
+    representation.etag = document.etag;
+    representation.content = document.text;
+    Response response = respond_with(call.request, std::move(representation));
+    const bool has_content = response.status == 200 || response.status == 206;
+    if (has_content && !document.policy.empty()) {
+        response.headers.emplace_back("Content-Security-Policy", document.policy);
+    }
+    return response;
+}
+
+}  // namespace
+
+Response get_openapi(const Call& call) {
+    return respond_with_document(call, call.documents.openapi, "application/json");
+}
+
+Response get_asyncapi(const Call& call) {
+    return respond_with_document(call, call.documents.asyncapi, "application/json");
+}
+
+Response get_docs_page(const Call& call) {
+    return respond_with_document(call, call.documents.docs, "text/html; charset=utf-8");
+}
+
+Response get_start_page(const Call& call) {
+    return respond_with_document(call, call.documents.start, "text/html; charset=utf-8");
 }
 
 }  // namespace modelsynth::server

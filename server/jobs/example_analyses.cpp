@@ -16,7 +16,7 @@ namespace {
 
 using proto::make_problem;
 
-constexpr std::chrono::seconds kLongest(30);
+constexpr std::chrono::seconds kLongest(ExampleAnalyses::kSecondsMax);
 
 // Asks for a stop when the time is up or another stop was asked for.
 class Alarm {

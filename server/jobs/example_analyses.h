@@ -15,6 +15,8 @@ namespace modelsynth::server {
 // kept_results.h for how many are made at a time. Thread-safe; calls block.
 class ExampleAnalyses {
   public:
+    static constexpr unsigned kSecondsMax = 30;
+
     // Of the example of that id, whose content never changes.
     // Fails: busy when too many wait, too-large when it takes too long, draining after stop().
     [[nodiscard]] proto::Parsed<std::shared_ptr<const Analysis>> find_or_make(

@@ -1,6 +1,7 @@
 #include "server/stream/event_stream.h"
 
 #include "proto/job.h"
+#include "server/stream/stream_limits.h"
 
 #include <chrono>
 #include <utility>
@@ -12,7 +13,7 @@ namespace {
 // How long a browser waits before it connects again.
 constexpr const char* kHello = "retry: 2000\n\n";
 constexpr const char* kComment = ": still here\n\n";
-constexpr auto kHeartbeat = std::chrono::seconds(15);
+constexpr auto kHeartbeat = std::chrono::seconds(kEventStreamHeartbeatSeconds);
 constexpr auto kWait = std::chrono::milliseconds(500);
 
 std::string text_of(const EventPage& page) {

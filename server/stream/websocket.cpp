@@ -5,6 +5,7 @@
 #include "proto/timestamp.h"
 #include "server/stream/event_cursor.h"
 #include "server/stream/on_pool.h"
+#include "server/stream/stream_limits.h"
 #include "solver/mesh/glb_writer.h"
 
 #include <boost/asio/as_tuple.hpp>
@@ -36,7 +37,6 @@ constexpr auto kToken = net::as_tuple(net::use_awaitable);
 constexpr auto kSlowWrite = std::chrono::seconds(2);
 // ... and is then spared the events in between when there are more than this.
 constexpr std::uint64_t kLagMax = 64;
-constexpr std::size_t kMessageBytesMax = 4096;
 
 // What the two halves of a session share. Both run on the connection's strand.
 struct Session {
@@ -303,7 +303,7 @@ net::awaitable<void> serve_websocket(
     Session session(std::move(stream), upgrade, context);
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
     timeout.handshake_timeout = std::chrono::seconds(10);
-    timeout.idle_timeout = std::chrono::seconds(60);
+    timeout.idle_timeout = std::chrono::seconds(kSocketIdleSeconds);
     timeout.keep_alive_pings = true;
     session.socket.set_option(timeout);
     auto decorate = [](websocket::response_type& response) {
@@ -311,7 +311,7 @@ net::awaitable<void> serve_websocket(
         response.set(beast::http::field::server, "modelsynthd");
     };
     session.socket.set_option(websocket::stream_base::decorator(decorate));
-    session.socket.read_message_max(kMessageBytesMax);
+    session.socket.read_message_max(kSocketMessageBytesMax);
     auto [error] = co_await session.socket.async_accept(request, kToken);
     if (error) {
         co_return;

@@ -12,6 +12,7 @@ import time
 
 import pytest
 
+from api_document import ApiDocument
 from conftest import Server
 from event_reader import EventReader
 from glb_file import GlbFile
@@ -526,6 +527,13 @@ def test_a_snapshot_holds_the_whole_job(lagged):
     for snapshot in snapshots_of(lagged):
         assert {"id", "state", "solver", "seed", "created", "progress", "request", "result",
                 "urls", "error"} <= snapshot["job"].keys()
+
+
+def test_a_snapshot_is_as_documented(server, lagged):
+    asyncapi = ApiDocument(server.get("/asyncapi.json").json())
+    payload = asyncapi.at("channels", "jobStream", "messages", "snapshot")["payload"]
+    for snapshot in snapshots_of(lagged):
+        asyncapi.check(snapshot, payload)
 
 
 def test_the_seq_of_a_snapshot_is_that_of_the_newest_event_it_includes(lagged):

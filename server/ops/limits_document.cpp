@@ -1,0 +1,233 @@
+#include "server/ops/limits_document.h"
+
+#include "proto/limit_codec.h"
+#include "proto/limits.h"
+#include "server/http/handlers.h"
+#include "server/http/request_fields.h"
+#include "server/stream/stream_limits.h"
+#include "solver/mesh/glb_writer.h"
+
+#include <vector>
+
+namespace modelsynth::server {
+
+namespace {
+
+using proto::Limit;
+
+template <class Number>
+Limit limit(const char* name, Number value, const char* unit, const char* description) {
+    return {name, static_cast<double>(value), unit, description};
+}
+
+void append(std::vector<Limit>& limits, std::vector<Limit> more) {
+    limits.insert(limits.end(), more.begin(), more.end());
+}
+
+std::vector<Limit> limits_of_connections(const HttpLimits& http) {
+    return {
+        limit("connections_max", http.connections_max, "connections", "Open at once; 503 beyond."),
+        limit(
+            "requests_per_connection_max",
+            http.requests_per_connection_max,
+            "requests",
+            "After so many the connection is closed."
+        ),
+        limit(
+            "request_line_bytes_max",
+            http.target_bytes_max,
+            "bytes",
+            "Of a request line with its target; 414 beyond."
+        ),
+        limit("head_bytes_max", http.head_bytes_max, "bytes", "Of a request's head; 431 beyond."),
+        limit("fields_max", http.fields_max, "header fields", "Of a request; 431 beyond."),
+        limit("head_seconds", http.head_seconds, "seconds", "For a request's head to come; 408."),
+        limit("body_seconds", http.body_seconds, "seconds", "For a request's body to come; 408."),
+        limit("idle_seconds", http.idle_seconds, "seconds", "Between two requests."),
+        limit(
+            "write_seconds",
+            http.write_seconds,
+            "seconds",
+            "For a client to take a piece of an answer; then the connection is closed."
+        ),
+        limit(
+            "job_body_bytes_max",
+            http.job_body_bytes_max,
+            "bytes",
+            "Of the body of POST /v1/jobs; 413 beyond."
+        ),
+        limit(
+            "upload_body_bytes_max",
+            http.upload_body_bytes_max,
+            "bytes",
+            "Of the body of POST /v1/examples; 413 beyond."
+        ),
+        limit(
+            "other_body_bytes_max",
+            http.other_body_bytes_max,
+            "bytes",
+            "Of any other body; 413 beyond."
+        ),
+    };
+}
+
+std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
+    return {
+        limit("queue_max", jobs.queue_max, "jobs", "That wait; 503 queue-full beyond."),
+        limit(
+            "examples_max",
+            jobs.examples_max,
+            "examples",
+            "Uploaded and kept; 422 too-large beyond."
+        ),
+        limit(
+            "prefer_wait_seconds_max",
+            kPreferredWaitSecondsMax,
+            "seconds",
+            "That Prefer: wait is granted; more is taken for this."
+        ),
+        limit(
+            "cancel_wait_seconds_max",
+            kCancelWaitSecondsMax,
+            "seconds",
+            "That the answer to a cancellation waits for the end."
+        ),
+        limit(
+            "idempotency_key_characters_max",
+            kIdempotencyKeyCharactersMax,
+            "characters",
+            "Of an Idempotency-Key."
+        ),
+        limit("page_items_max", kJobsPerPageMax, "jobs", "Of one page of GET /v1/jobs."),
+        limit(
+            "page_items_default",
+            kJobsPerPageDefault,
+            "jobs",
+            "Of one page of GET /v1/jobs without limit."
+        ),
+        limit(
+            "analysis_seconds_max",
+            ExampleAnalyses::kSecondsMax,
+            "seconds",
+            "That an example is analysed; 422 too-large beyond."
+        ),
+        limit(
+            "socket_message_bytes_max",
+            kSocketMessageBytesMax,
+            "bytes",
+            "Of a message to a WebSocket; closed with 1009 beyond."
+        ),
+        limit(
+            "socket_idle_seconds",
+            kSocketIdleSeconds,
+            "seconds",
+            "Without a sign of a WebSocket's client; pings are sent before."
+        ),
+        limit(
+            "event_stream_heartbeat_seconds",
+            kEventStreamHeartbeatSeconds,
+            "seconds",
+            "Between two signs of life of an event stream."
+        ),
+        limit("problem_errors_max", proto::kFaultsMax, "errors", "Listed in one problem document."),
+    };
+}
+
+std::vector<Limit> limits_of_documents(const proto::RequestLimits& requests) {
+    return {
+        limit("json_depth_max", requests.json.depth_max, "levels", "Of JSON; 400 beyond."),
+        limit("json_nodes_max", requests.json.nodes_max, "values", "Of JSON; 400 beyond."),
+        limit(
+            "json_string_bytes_max",
+            requests.json.string_bytes_max,
+            "bytes",
+            "Of a string in JSON; 400 beyond."
+        ),
+        limit("seed_max", proto::kSeedMax, "", "The greatest seed."),
+        limit("tags_max", requests.tags_max, "tags", "Of a job."),
+        limit("name_characters_max", requests.name_characters_max, "characters", "Of a name."),
+        limit(
+            "deadline_seconds_max", requests.deadline_seconds_max, "seconds", "Of a job's deadline."
+        ),
+        limit("constraints_max", requests.constraints_max, "constraints", "Of one request."),
+        limit(
+            "member_rules_max",
+            requests.member_rules_max,
+            "constraints",
+            "Of count, separation, max_run, connected, acyclic and path in one request."
+        ),
+        limit(
+            "symmetries_max", requests.symmetries_max, "constraints", "Of symmetry in a request."
+        ),
+        limit("masks_max", requests.masks_max, "constraints", "With a mask in one request."),
+        limit("mask_bytes_max", requests.mask.text_bytes_max, "bytes", "Of a mask's data: URI."),
+        limit(
+            "mask_side_pixels_max", requests.mask.side_pixels_max, "pixels", "A mask wide and high."
+        ),
+        limit("voxels_max", requests.voxels_max, "values", "Of voxels in one constraint."),
+        limit("separation_max", requests.separation_max, "steps", "Of a separation."),
+        limit(
+            "resemblance_window_max", requests.resemblance_window_max, "cells", "Of a resemblance."
+        ),
+        limit("terms_max", requests.terms_max, "terms", "Of one objective."),
+        limit("best_of_max", requests.best_of_max, "models", "That one is chosen from."),
+    };
+}
+
+std::vector<Limit> limits_of_models(const proto::RequestLimits& requests) {
+    return {
+        limit(
+            "model_cells_max",
+            requests.model_cells_max,
+            "cells",
+            "Of a model, all its alternatives together; 422 too-large beyond."
+        ),
+        limit("extent_max", requests.extent_max, "cells", "Of a model or example along an axis."),
+        limit(
+            "blocks_max",
+            requests.blocks_max,
+            "blocks",
+            "Of a schedule, for all alternatives together; 422 too-large beyond."
+        ),
+        limit("block_extent_max", requests.block_extent_max, "cells", "Of a block along an axis."),
+        limit("alternatives_max", requests.alternatives_max, "models", "Of one job."),
+        limit("pieces_max", requests.pieces_max, "pieces", "Of one example."),
+        limit("example_cells_max", requests.example_cells_max, "cells", "Of one example."),
+        limit("glb_bytes_max", requests.glb_bytes_max, "bytes", "Of a GLB within a request."),
+        limit(
+            "model_bytes_max",
+            GlbOptions{}.bytes_max,
+            "bytes",
+            "Of a GLB that is made; 422 too-large beyond."
+        ),
+    };
+}
+
+std::vector<Limit> retention_times(const Config& config) {
+    return {
+        {"model_seconds",
+         static_cast<double>(config.retention_ms) / 1000,
+         "seconds",
+         "Models, previews and labels, from the end of their job; it tells when in expires. 410 "
+         "then."},
+        {"job_seconds", std::nullopt, "seconds", "A job and its events: until it is deleted."},
+        {"idempotency_key_seconds",
+         std::nullopt,
+         "seconds",
+         "As long as the job that it named. A key is the server's own, whoever sends it, and is "
+         "looked at on POST /v1/jobs alone."},
+        {"example_seconds", std::nullopt, "seconds", "An uploaded example: until it is deleted."},
+    };
+}
+
+}  // namespace
+
+std::string limits_document(const Config& config) {
+    std::vector<Limit> limits = limits_of_models(config.jobs.limits);
+    append(limits, limits_of_documents(config.jobs.limits));
+    append(limits, limits_of_service(config.jobs));
+    append(limits, limits_of_connections(config.http.limits));
+    return proto::limits_json(limits, retention_times(config));
+}
+
+}  // namespace modelsynth::server
