@@ -14,6 +14,9 @@
 
 namespace modelsynth::server {
 
+// As long as an answer is held back at most.
+inline constexpr std::uint64_t kWaitSecondsMax = 60;
+
 // Digits and nothing else.
 [[nodiscard]] std::optional<std::uint64_t> parse_number(const std::string& text);
 
