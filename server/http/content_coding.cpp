@@ -71,10 +71,12 @@ AcceptedCodings parse_accept_encoding(const std::optional<std::string>& list) {
     return accepted;
 }
 
-std::optional<ContentCoding> choose_coding(const Request& request, std::uint64_t size) {
+std::optional<ContentCoding> choose_coding(
+    const Request& request, std::uint64_t size, bool can_be_coded
+) {
     const AcceptedCodings accepted = parse_accept_encoding(request.header_list("accept-encoding"));
     const bool wants_part = request.method == "GET" && request.header("range");
-    if (accepted.gzip &&
+    if (can_be_coded && accepted.gzip &&
         (!accepted.identity || (accepted.prefers_gzip && size >= kCodedBytesMin && !wants_part))) {
         return ContentCoding::kGzip;
     }

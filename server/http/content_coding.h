@@ -24,10 +24,10 @@ struct AcceptedCodings {
 
 [[nodiscard]] AcceptedCodings parse_accept_encoding(const std::optional<std::string>& list);
 
-// How a body of that size is sent that may be coded; nothing when the client takes it in no way.
-// A part of a body is one of the body as it is, so who asks for one gets no coding.
+// How a body of that size is sent; nothing when the client takes it in no way. A part of a body is
+// one of the body as it is, so who asks for one gets no coding.
 [[nodiscard]] std::optional<ContentCoding> choose_coding(
-    const Request& request, std::uint64_t size
+    const Request& request, std::uint64_t size, bool can_be_coded = true
 );
 
 // Codes an answer that is made for this request alone and says nothing of codings yet, when it is

@@ -170,12 +170,14 @@ proto::Parsed<ModelFile> wanted_file(const Call& call) {
     });
 }
 
-proto::Parsed<Content> open_file(const Call& call, const std::string& digest) {
+using Reader = std::shared_ptr<ArtifactStore::Reader>;
+
+proto::Parsed<Reader> open_file(const Call& call, const std::string& digest) {
     auto reader = call.service.artifacts().open(digest);
     if (!reader) {
         return tl::unexpected(make_problem("not-found", "the model was deleted"));
     }
-    return Content(std::shared_ptr<ArtifactStore::Reader>(std::move(*reader)));
+    return Reader(std::move(*reader));
 }
 
 }  // namespace
@@ -192,19 +194,23 @@ Response get_model(const Call& call) {
     if (!digest) {
         return refuse(call, digest.error());
     }
-    auto content = open_file(call, *digest);
-    if (!content) {
-        return refuse(call, content.error());
+    auto reader = open_file(call, *digest);
+    if (!reader) {
+        return refuse(call, reader.error());
     }
+    const std::uint64_t size = (*reader)->size();
     Representation representation;
     representation.media_type = "model/gltf-binary";
     representation.etag = "\"" + *digest + "\"";
     representation.file_name = file_stem(call, file->alternative) + ".glb";
-    representation.content = std::move(*content);
-    representation.gzipped = [&call, &file] {
-        return call.service.gzipped_model_digest(call.id, *file)
-            .and_then([&call](const std::string& gzip) { return open_file(call, gzip); });
-    };
+    representation.content = std::move(*reader);
+    if (size <= JobService::kGzippedBytesMax) {
+        representation.gzipped = [&call, &file] {
+            return call.service.gzipped_model_digest(call.id, *file)
+                .and_then([&call](const std::string& gzip) { return open_file(call, gzip); })
+                .map([](Reader gzip) { return Content(std::move(gzip)); });
+        };
+    }
     return respond_with(call.request, std::move(representation));
 }
 

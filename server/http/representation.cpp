@@ -196,10 +196,13 @@ Response respond_coded(
 }  // namespace
 
 Response respond_with(const Request& request, Representation representation) {
-    const auto coding = choose_coding(request, size_of(representation.content));
+    const bool can_be_coded =
+        representation.gzipped || std::holds_alternative<std::string>(representation.content);
+    const auto coding = choose_coding(request, size_of(representation.content), can_be_coded);
     if (!coding) {
         Response response = problem_response(
-            proto::plain_problem(406, "this can be had as it is or with the coding gzip"), request
+            proto::plain_problem(406, "this is had as it is, or with gzip unless it is very large"),
+            request
         );
         response.headers.emplace_back("Vary", "Accept-Encoding");
         return response;

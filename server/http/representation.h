@@ -17,8 +17,8 @@ struct Representation {
     std::string etag;  // quoted, of the content as it is
     std::string file_name;
     Content content;
-    // The content coded with gzip, where that is kept; without it the content, which is then in
-    // memory, is coded for this answer.
+    // The content coded with gzip, where that is kept. Without it, what is in memory is coded for
+    // this answer and a file is only had as it is.
     std::function<proto::Parsed<Content>()> gzipped = {};
 };
 

@@ -64,6 +64,9 @@ class JobService {
     [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
     [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
 
+    // Coding this much takes some ten seconds, while the client waits for its first byte.
+    static constexpr std::uint64_t kGzippedBytesMax = std::uint64_t{256} << 20;
+
     // Which file of a finished model. Of several models the first; an alternative that is named is
     // there as soon as it is made, whatever becomes of the job.
     struct ModelFile {
@@ -119,9 +122,6 @@ class JobService {
         Example example;
         Model model;
     };
-
-    // Coding this much takes some ten seconds, while the client waits for its first byte.
-    static constexpr std::uint64_t kGzippedBytesMax = std::uint64_t{256} << 20;
 
     void work(const std::stop_token& stop);
     // Removes what has expired, once a minute whichever worker comes first.

@@ -115,6 +115,28 @@ TEST(Representation, IsHadAsItIsWhenItCannotBeCoded) {
     EXPECT_EQ(respond_with(strict, representation).status, 503);
 }
 
+class Zeros final : public ArtifactStore::Reader {
+  public:
+    [[nodiscard]] std::uint64_t size() const override { return 5000; }
+
+    [[nodiscard]] Stored<void> read(std::uint64_t /*offset*/, std::span<char> into) override {
+        std::fill(into.begin(), into.end(), '\0');
+        return {};
+    }
+};
+
+TEST(Representation, IsHadAsItIsWhenItIsAFileThatIsNotKeptCoded) {
+    Representation representation = {
+        "model/gltf-binary", "\"tag\"", "", std::make_shared<Zeros>(), {}};
+    const auto respond = [&](Fields headers) {
+        return respond_with(make_request(std::move(headers)), representation);
+    };
+    EXPECT_EQ(header_of(respond({kGzip}), "ETag"), "\"tag\"");
+    EXPECT_EQ(respond({kGzip, {"if-match", "\"tag\""}}).status, 200);
+    EXPECT_EQ(respond({kGzip, {"if-none-match", "\"tag\""}}).status, 304);
+    EXPECT_EQ(respond({{"accept-encoding", "gzip, identity;q=0"}}).status, 406);
+}
+
 TEST(Representation, CodesNothingThatIsNotSent) {
     Representation representation = in_memory("application/json", kText);
     representation.gzipped = []() -> proto::Parsed<Content> {
