@@ -131,10 +131,9 @@ TEST(Meshopt, LeavesGridsAsTheyAre) {
 }
 
 TEST(Meshopt, LeavesSolidsAsTheyAre) {
-    for (const char* name : {"houses", "domes"}) {
-        for (const GlbProfile profile : kProfiles) {
-            expect_same(example_scene(*examples::find(name)), profile);
-        }
+    const Scene scene = example_scene(*examples::find("domes"));
+    for (const GlbProfile profile : kProfiles) {
+        expect_same(scene, profile);
     }
 }
 
