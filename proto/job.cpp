@@ -114,6 +114,7 @@ std::string to_json(const Job& job) {
     OrderedJson document = {
         {"id", job.id},
         {"state", state_name(job.state)},
+        {"seq", job.head},
         {"solver", job.solver},
         {"seed", job.seed},
         {"created", to_rfc3339(job.created)},

@@ -172,6 +172,9 @@ Problem problem_of(const Error& error) {
 Problem plain_problem(int status, std::string detail) {
     const char* title = "Error";
     switch (status) {
+        case 406:
+            title = "Not Acceptable";
+            break;
         case 408:
             title = "Request Timeout";
             break;

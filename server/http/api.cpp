@@ -1,7 +1,9 @@
 #include "server/http/api.h"
 
 #include "proto/job.h"
+#include "server/http/content_coding.h"
 #include "server/http/handlers.h"
+#include "server/http/representation.h"
 #include "server/http/request_fields.h"
 
 #include <algorithm>
@@ -214,7 +216,12 @@ Response Api::handle(const Request& request) {
             return problem_response(job.error(), request);
         }
     }
-    return match.route->handler({service_, admission_, request, std::move(match.id), documents_});
+    Response response =
+        match.route->handler({service_, admission_, request, std::move(match.id), documents_});
+    if (!response.wait) {
+        code_body(request, response);
+    }
+    return response;
 }
 
 Response Api::answer_with_job(
@@ -223,6 +230,9 @@ Response Api::answer_with_job(
     const auto job = service_.find(wait.job_id);
     if (!job) {
         return problem_response(job.error(), request);
+    }
+    if (request.method != "POST") {
+        return respond_with_json(request, proto::to_json(*job));
     }
     Response response = json_response(
         proto::is_ended(job->state) ? wait.status_ended : wait.status_unfinished,
@@ -233,6 +243,7 @@ Response Api::answer_with_job(
             response.headers.push_back(field);
         }
     }
+    code_body(request, response);
     return response;
 }
 

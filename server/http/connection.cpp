@@ -320,10 +320,15 @@ class Connection {
         co_return std::get<0>(std::get<0>(outcome));
     }
 
-    // Waits until the job ended, the time is up or the client is gone.
+    // Waits until the job ended, or has the event that is waited for, the time is up or the client
+    // is gone.
     net::awaitable<void> wait_for_job(const WaitForJob wait) {
         EventCursor cursor(
-            context_.api->service().events(), *context_.pool, stream_.get_executor(), wait.job_id, 0
+            context_.api->service().events(),
+            *context_.pool,
+            stream_.get_executor(),
+            wait.job_id,
+            wait.since.value_or(0)
         );
         const auto until = std::chrono::steady_clock::now() + wait.most;
         stream_.expires_never();
@@ -336,7 +341,8 @@ class Connection {
             }
             constexpr auto kSlice = std::chrono::milliseconds(500);
             const auto batch = co_await cursor.next(std::min(left, kSlice));
-            if (batch.gone || batch.finished) {
+            const bool has_news = wait.since && !batch.page.events.empty();
+            if (batch.gone || batch.finished || has_news) {
                 co_return;
             }
         }

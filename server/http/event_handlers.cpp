@@ -57,7 +57,7 @@ std::optional<Response> check_handshake(const Call& call) {
         response.headers.emplace_back("Sec-WebSocket-Version", "13");
         return response;
     };
-    if (!has("upgrade", "websocket") || !has("connection", "upgrade")) {
+    if (request.method != "GET" || !has("upgrade", "websocket") || !has("connection", "upgrade")) {
         return upgrade_required("this resource speaks WebSocket only");
     }
     if (request.header("sec-websocket-version") != "13") {

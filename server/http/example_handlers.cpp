@@ -49,7 +49,7 @@ Response list_examples(const Call& call) {
     for (const auto& entry : *entries) {
         items.push_back(proto::example_summary(entry.example, entry.id, entry.built_in));
     }
-    return json_response(200, proto::list_json(items, std::nullopt));
+    return respond_with_json(call.request, proto::list_json(items, std::nullopt));
 }
 
 Response upload_example(const Call& call) {
@@ -70,7 +70,9 @@ Response get_example(const Call& call) {
     if (!entry) {
         return no_example(call);
     }
-    return json_response(200, proto::example_resource(entry->example, entry->id, entry->built_in));
+    return respond_with_json(
+        call.request, proto::example_resource(entry->example, entry->id, entry->built_in)
+    );
 }
 
 Response delete_example(const Call& call) {
@@ -102,8 +104,10 @@ Response get_example_pieces(const Call& call) {
 }
 
 Response get_example_analysis(const Call& call) {
-    return with_analysis(call, [](const auto& entry, const Analysis& analysis) {
-        return json_response(200, proto::analysis_json(entry.example, entry.id, analysis));
+    return with_analysis(call, [&call](const auto& entry, const Analysis& analysis) {
+        return respond_with_json(
+            call.request, proto::analysis_json(entry.example, entry.id, analysis)
+        );
     });
 }
 
@@ -115,7 +119,7 @@ Response get_example_success(const Call& call) {
                 call, make_problem("not-found", "how often such examples succeed is not measured")
             );
         }
-        return {200, {{"Content-Type", "image/svg+xml"}}, std::move(*drawing)};
+        return respond_with(call.request, in_memory("image/svg+xml", std::move(*drawing)));
     });
 }
 
@@ -135,17 +139,16 @@ Response get_example_figures(const Call& call) {
     if (!number) {
         return refuse(call, number.error());
     }
-    Response response = {200, {{"Content-Type", "image/svg+xml"}}, std::string()};
     if (call.request.query_field("figure")) {
-        response.body = proto::figure_drawing(entry->example, *number);
-        return response;
+        return respond_with(
+            call.request, in_memory("image/svg+xml", proto::figure_drawing(entry->example, *number))
+        );
     }
     const auto sheet = call.service.analyses().find_or_draw_figures(entry->id, entry->example);
     if (!sheet) {
         return refuse(call, sheet.error());
     }
-    response.body = **sheet;
-    return response;
+    return respond_with(call.request, in_memory("image/svg+xml", **sheet));
 }
 
 }  // namespace modelsynth::server

@@ -4,6 +4,8 @@
 #include "server/http/representation.h"
 #include "server/http/request_fields.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace modelsynth::server {
@@ -66,12 +68,32 @@ Response list_jobs(const Call& call) {
     for (const proto::Job& job : page->jobs) {
         items.push_back(proto::to_json(job));
     }
-    return json_response(200, proto::list_json(items, page->next));
+    return respond_with_json(call.request, proto::list_json(items, page->next));
 }
 
 Response get_job(const Call& call) {
+    if (auto problem = check_query(call.request, {"wait", "since"})) {
+        return refuse(call, *problem);
+    }
+    const auto wait = query_number(call.request, "wait", 0, 0, proto::kSeedMax);
+    if (!wait) {
+        return refuse(call, wait.error());
+    }
     const auto job = call.service.find(call.id);
-    return job ? json_response(200, proto::to_json(*job)) : refuse(call, job.error());
+    if (!job) {
+        return refuse(call, job.error());
+    }
+    const auto since = query_number(call.request, "since", job->head, 0, job->head);
+    if (!since) {
+        return refuse(call, since.error());
+    }
+    Response response = respond_with_json(call.request, proto::to_json(*job));
+    const bool is_news = *since < job->head || proto::is_ended(job->state);
+    if (*wait > 0 && !is_news && response.status < 400) {
+        const std::chrono::seconds most(std::min(*wait, kWaitSecondsMax));
+        response.wait = WaitForJob{call.id, most, 200, 200, *since};
+    }
+    return response;
 }
 
 Response cancel_job(const Call& call) {
@@ -111,47 +133,85 @@ std::string file_stem(const Call& call, const std::optional<std::uint32_t>& alte
     return alternative ? call.id + "-" + std::to_string(*alternative) : call.id;
 }
 
+using ModelFile = JobService::ModelFile;
+
+template <class Value, std::size_t kCount>
+const Value* find_named(
+    const std::array<std::pair<std::string_view, Value>, kCount>& known, const std::string& name
+) {
+    const auto found = std::find_if(known.begin(), known.end(), [&name](const auto& entry) {
+        return entry.first == name;
+    });
+    return found == known.end() ? nullptr : &found->second;
+}
+
+proto::Parsed<ModelFile> wanted_file(const Call& call) {
+    static constexpr std::array<std::pair<std::string_view, GlbProfile>, 3> kProfiles = {
+        {{"nodes", GlbProfile::kNodes},
+         {"instanced", GlbProfile::kInstanced},
+         {"merged", GlbProfile::kMerged}}};
+    static constexpr std::array<std::pair<std::string_view, GlbCompression>, 2> kCompressions = {
+        {{"none", GlbCompression::kNone}, {"meshopt", GlbCompression::kMeshopt}}};
+    const auto* profile =
+        find_named(kProfiles, call.request.query_field("profile").value_or("nodes"));
+    if (profile == nullptr) {
+        return tl::unexpected(
+            make_problem("invalid-request", "\"profile\" must be nodes, instanced or merged")
+        );
+    }
+    const auto* compression =
+        find_named(kCompressions, call.request.query_field("compression").value_or("none"));
+    if (compression == nullptr) {
+        return tl::unexpected(
+            make_problem("invalid-request", "\"compression\" must be none or meshopt")
+        );
+    }
+    return wanted_alternative(call).map([&](const std::optional<std::uint32_t>& alternative) {
+        return ModelFile{*profile, *compression, alternative};
+    });
+}
+
+using Reader = std::shared_ptr<ArtifactStore::Reader>;
+
+proto::Parsed<Reader> open_file(const Call& call, const std::string& digest) {
+    auto reader = call.service.artifacts().open(digest);
+    if (!reader) {
+        return tl::unexpected(make_problem("not-found", "the model was deleted"));
+    }
+    return Reader(std::move(*reader));
+}
+
 }  // namespace
 
 Response get_model(const Call& call) {
     if (auto problem = check_query(call.request, {"profile", "compression", "alternative"})) {
         return refuse(call, *problem);
     }
-    static constexpr std::array<std::pair<std::string_view, GlbProfile>, 3> kProfiles = {
-        {{"nodes", GlbProfile::kNodes},
-         {"instanced", GlbProfile::kInstanced},
-         {"merged", GlbProfile::kMerged}}};
-    const std::string name = call.request.query_field("profile").value_or("nodes");
-    const auto profile = std::find_if(kProfiles.begin(), kProfiles.end(), [&](const auto& known) {
-        return known.first == name;
-    });
-    if (profile == kProfiles.end()) {
-        return refuse(
-            call, make_problem("invalid-request", "\"profile\" must be nodes, instanced or merged")
-        );
+    const auto file = wanted_file(call);
+    if (!file) {
+        return refuse(call, file.error());
     }
-    if (call.request.query_field("compression").value_or("none") != "none") {
-        return refuse(
-            call, make_problem("invalid-request", "\"compression\" must be none in this version")
-        );
-    }
-    const auto alternative = wanted_alternative(call);
-    if (!alternative) {
-        return refuse(call, alternative.error());
-    }
-    const auto digest = call.service.model_digest(call.id, profile->second, *alternative);
+    const auto digest = call.service.model_digest(call.id, *file);
     if (!digest) {
         return refuse(call, digest.error());
     }
-    auto reader = call.service.artifacts().open(*digest);
+    auto reader = open_file(call, *digest);
     if (!reader) {
-        return refuse(call, make_problem("not-found", "the model was deleted"));
+        return refuse(call, reader.error());
     }
+    const std::uint64_t size = (*reader)->size();
     Representation representation;
     representation.media_type = "model/gltf-binary";
     representation.etag = "\"" + *digest + "\"";
-    representation.file_name = file_stem(call, *alternative) + ".glb";
-    representation.content = std::shared_ptr<ArtifactStore::Reader>(std::move(*reader));
+    representation.file_name = file_stem(call, file->alternative) + ".glb";
+    representation.content = std::move(*reader);
+    if (size <= JobService::kGzippedBytesMax) {
+        representation.gzipped = [&call, &file] {
+            return call.service.gzipped_model_digest(call.id, *file)
+                .and_then([&call](const std::string& gzip) { return open_file(call, gzip); })
+                .map([](Reader gzip) { return Content(std::move(gzip)); });
+        };
+    }
     return respond_with(call.request, std::move(representation));
 }
 
@@ -175,11 +235,7 @@ Response get_labels(const Call& call) {
     if (!labels) {
         return refuse(call, labels.error());
     }
-    Representation representation;
-    representation.media_type = "application/json";
-    representation.etag = "\"" + sha256_hex(*labels) + "\"";
-    representation.content = std::move(*labels);
-    return respond_with(call.request, std::move(representation));
+    return respond_with_json(call.request, std::move(*labels));
 }
 
 }  // namespace modelsynth::server

@@ -61,13 +61,14 @@ struct SocketUpgrade {
     Partial partial = Partial::kNone;
 };
 
-// The answer is held back until the job has ended or the time is up; then answer_with_job() makes
-// it.
+// The answer is held back until the job has ended or the time is up, or an event has come beyond
+// `since` where that is given; then answer_with_job() makes it.
 struct WaitForJob {
     std::string job_id;
     std::chrono::milliseconds most = {};
     int status_ended = 200;
     int status_unfinished = 202;
+    std::optional<std::uint64_t> since = {};
 };
 
 struct Response {

@@ -1,5 +1,8 @@
 #include "server/http/representation.h"
 
+#include "server/http/content_coding.h"
+#include "server/jobs/gzip.h"
+
 #include <algorithm>
 #include <charconv>
 #include <string_view>
@@ -86,66 +89,98 @@ RangeVerdict parse_range(std::string_view text, std::uint64_t size, ByteRange& r
     return RangeVerdict::kPart;
 }
 
-std::uint64_t size_of(const Representation& representation) {
-    if (const auto* text = std::get_if<std::string>(&representation.content)) {
+std::uint64_t size_of(const Content& content) {
+    if (const auto* text = std::get_if<std::string>(&content)) {
         return text->size();
     }
-    return std::get<std::shared_ptr<ArtifactStore::Reader>>(representation.content)->size();
+    return std::get<std::shared_ptr<ArtifactStore::Reader>>(content)->size();
 }
 
-void set_body(Response& response, Representation& representation, const ByteRange& range) {
-    if (auto* text = std::get_if<std::string>(&representation.content)) {
+void set_body(Response& response, Content& content, const ByteRange& range) {
+    if (auto* text = std::get_if<std::string>(&content)) {
         response.body = text->substr(range.first, range.length);
         return;
     }
     response.body = FileBody{
-        std::get<std::shared_ptr<ArtifactStore::Reader>>(representation.content),
-        range.first,
-        range.length};
+        std::get<std::shared_ptr<ArtifactStore::Reader>>(content), range.first, range.length};
 }
 
-}  // namespace
+// The tag of the content in that coding.
+std::string coded_tag(const std::string& etag, ContentCoding coding) {
+    return coding == ContentCoding::kGzip ? etag.substr(0, etag.size() - 1) + "-gzip\"" : etag;
+}
 
-Response respond_with(const Request& request, Representation representation) {
-    const std::uint64_t size = size_of(representation);
-    Response response;
-    response.headers = {
-        {"ETag", representation.etag}, {"Cache-Control", "no-cache"}, {"Accept-Ranges", "bytes"}};
+proto::Parsed<Content> gzip_content(const Representation& representation) {
+    return representation.gzipped ? representation.gzipped()
+                                  : Content(gzipped(std::get<std::string>(representation.content)));
+}
+
+// The answer that the preconditions give in place of the content; nothing: they hold.
+std::optional<Response> check_preconditions(const Request& request, const std::string& etag) {
     const auto if_match = request.header_list("if-match");
-    if (if_match && !lists_tag(*if_match, representation.etag, false)) {
-        response = problem_response(
+    if (if_match && !lists_tag(*if_match, etag, false)) {
+        return problem_response(
             {"about:blank", "Precondition Failed", 412, "the entity tag is another", {}, {}},
             request
         );
-        response.headers.emplace_back("ETag", representation.etag);
-        return response;
     }
     const auto if_none_match = request.header_list("if-none-match");
-    if (if_none_match && lists_tag(*if_none_match, representation.etag, true)) {
-        response.status = 304;
-        return response;
+    if (if_none_match && lists_tag(*if_none_match, etag, true)) {
+        return Response{304, {}, std::string()};
     }
+    return std::nullopt;
+}
+
+std::string content_range(const ByteRange& range, std::uint64_t size) {
+    return "bytes " + std::to_string(range.first) + "-" +
+           std::to_string(range.first + range.length - 1) + "/" + std::to_string(size);
+}
+
+Response respond_coded(
+    const Request& request, Representation& representation, ContentCoding coding
+) {
+    const std::string etag = coded_tag(representation.etag, coding);
+    const Fields headers = {
+        {"ETag", etag}, {"Vary", "Accept-Encoding"}, {"Cache-Control", "no-cache"}};
+    if (auto answer = check_preconditions(request, etag)) {
+        answer->headers.insert(answer->headers.end(), headers.begin(), headers.end());
+        return *answer;
+    }
+    if (coding == ContentCoding::kGzip) {
+        auto content = gzip_content(representation);
+        if (!content) {
+            // What cannot be coded just now is better had as it is than not at all.
+            return parse_accept_encoding(request.header_list("accept-encoding")).identity
+                       ? respond_coded(request, representation, ContentCoding::kIdentity)
+                       : problem_response(content.error(), request);
+        }
+        representation.content = std::move(*content);
+    }
+    Response response;
+    response.headers = headers;
+    const std::uint64_t size = size_of(representation.content);
     ByteRange range = {0, size};
-    const auto range_field = request.header("range");
-    const auto if_range = request.header("if-range");
-    if (range_field && request.method == "GET" && (!if_range || *if_range == representation.etag)) {
-        switch (parse_range(*range_field, size, range)) {
-            case RangeVerdict::kWhole:
-                break;
-            case RangeVerdict::kPart:
-                response.status = 206;
-                response.headers.emplace_back(
-                    "Content-Range",
-                    "bytes " + std::to_string(range.first) + "-" +
-                        std::to_string(range.first + range.length - 1) + "/" + std::to_string(size)
-                );
-                break;
-            case RangeVerdict::kUnsatisfiable:
-                response = problem_response(
-                    proto::plain_problem(416, "the range lies beyond the file"), request
-                );
-                response.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));
-                return response;
+    if (coding == ContentCoding::kGzip) {
+        response.headers.emplace_back("Content-Encoding", "gzip");
+    } else {
+        response.headers.emplace_back("Accept-Ranges", "bytes");
+        const auto range_field = request.header("range");
+        const auto if_range = request.header("if-range");
+        const auto verdict =
+            range_field && request.method == "GET" && (!if_range || *if_range == etag)
+                ? parse_range(*range_field, size, range)
+                : RangeVerdict::kWhole;
+        if (verdict == RangeVerdict::kUnsatisfiable) {
+            response = problem_response(
+                proto::plain_problem(416, "the range lies beyond the file"), request
+            );
+            response.headers.emplace_back("Vary", "Accept-Encoding");
+            response.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));
+            return response;
+        }
+        if (verdict == RangeVerdict::kPart) {
+            response.status = 206;
+            response.headers.emplace_back("Content-Range", content_range(range, size));
         }
     }
     response.headers.emplace_back("Content-Type", representation.media_type);
@@ -154,17 +189,43 @@ Response respond_with(const Request& request, Representation representation) {
             "Content-Disposition", "inline; filename=\"" + representation.file_name + "\""
         );
     }
-    set_body(response, representation, range);
+    set_body(response, representation.content, range);
     return response;
 }
 
-Representation glb_in_memory(std::string glb, std::string file_name) {
+}  // namespace
+
+Response respond_with(const Request& request, Representation representation) {
+    const bool can_be_coded =
+        representation.gzipped || std::holds_alternative<std::string>(representation.content);
+    const auto coding = choose_coding(request, size_of(representation.content), can_be_coded);
+    if (!coding) {
+        Response response = problem_response(
+            proto::plain_problem(406, "this is had as it is, or with gzip unless it is very large"),
+            request
+        );
+        response.headers.emplace_back("Vary", "Accept-Encoding");
+        return response;
+    }
+    return respond_coded(request, representation, *coding);
+}
+
+Representation in_memory(std::string media_type, std::string content) {
     Representation representation;
-    representation.media_type = "model/gltf-binary";
-    representation.etag = "\"" + sha256_hex(glb) + "\"";
-    representation.file_name = std::move(file_name);
-    representation.content = std::move(glb);
+    representation.media_type = std::move(media_type);
+    representation.etag = "\"" + sha256_hex(content) + "\"";
+    representation.content = std::move(content);
     return representation;
+}
+
+Representation glb_in_memory(std::string glb, std::string file_name) {
+    Representation representation = in_memory("model/gltf-binary", std::move(glb));
+    representation.file_name = std::move(file_name);
+    return representation;
+}
+
+Response respond_with_json(const Request& request, std::string json) {
+    return respond_with(request, in_memory("application/json", std::move(json)));
 }
 
 }  // namespace modelsynth::server

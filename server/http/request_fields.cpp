@@ -101,7 +101,6 @@ Parsed<std::uint64_t> query_number(
 }
 
 std::optional<std::uint64_t> preferred_wait(const Request& request) {
-    constexpr std::uint64_t kMost = kPreferredWaitSecondsMax;
     for (const std::string& part : list_items(request.header_list("prefer").value_or(""))) {
         const std::string preference = lower_case(part.substr(0, part.find(';')));
         if (!preference.starts_with("wait=")) {
@@ -109,7 +108,7 @@ std::optional<std::uint64_t> preferred_wait(const Request& request) {
         }
         const std::string digits = preference.substr(5);
         if (!digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos) {
-            return std::min(kMost, parse_number(digits).value_or(kMost));
+            return std::min(kWaitSecondsMax, parse_number(digits).value_or(kWaitSecondsMax));
         }
     }
     return std::nullopt;

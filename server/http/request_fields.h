@@ -15,7 +15,8 @@
 
 namespace modelsynth::server {
 
-inline constexpr std::uint64_t kPreferredWaitSecondsMax = 60;
+// As long as an answer is held back at most.
+inline constexpr std::uint64_t kWaitSecondsMax = 60;
 inline constexpr std::size_t kIdempotencyKeyCharactersMax = 255;
 
 // Digits and nothing else.

@@ -14,8 +14,8 @@ Response refuse(const Call& call, const proto::Problem& problem) {
     return problem_response(problem, call.request);
 }
 
-Response list_solvers(const Call& /*call*/) {
-    return json_response(200, proto::solver_list_json());
+Response list_solvers(const Call& call) {
+    return respond_with_json(call.request, proto::solver_list_json());
 }
 
 Response get_solver(const Call& call) {
@@ -25,7 +25,7 @@ Response get_solver(const Call& call) {
             call, make_problem("not-found", "there is no solver " + call.id.substr(0, 64))
         );
     }
-    return json_response(200, std::move(solver));
+    return respond_with_json(call.request, std::move(solver));
 }
 
 Response give_ticket(const Call& call) {

@@ -1,6 +1,7 @@
 #include "server/jobs/job_service.h"
 
 #include "proto/frame.h"
+#include "server/jobs/gzip.h"
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
 #include "server/store/artifact_names.h"
@@ -59,6 +60,13 @@ CapacityLimits capacity_of(const JobServiceConfig& config) {
     limits.large_cost = kJobCost + config.large_sites;
     limits.large_jobs = std::max<std::size_t>(1, config.workers - 1);
     return limits;
+}
+
+std::string artifact_name(const JobService::ModelFile& file) {
+    const char* suffix = file.compression == GlbCompression::kMeshopt ? ".meshopt" : "";
+    return model_artifact(
+        std::string(profile_name(file.profile)) + suffix, file.alternative.value_or(0)
+    );
 }
 
 bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
@@ -360,30 +368,10 @@ Parsed<JobService::LoadedModel> JobService::load_model(
     return LoadedModel{request->task.example, {std::move(*space), std::move(*labels)}};
 }
 
-Parsed<std::string> JobService::model_digest(
-    const std::string& id, GlbProfile profile, const std::optional<std::uint32_t>& alternative
+Parsed<std::string> JobService::keep(
+    const std::string& id, const std::string& name, std::string_view bytes
 ) {
-    const auto job = find_with_model(id, alternative);
-    if (!job) {
-        return tl::unexpected(job.error());
-    }
-    const std::string name = model_artifact(profile_name(profile), alternative.value_or(0));
-    const auto known = jobs_.artifact(id, name);
-    if (known) {
-        return *known;
-    }
-    const auto loaded =
-        load_model(*job, load_artifact(id, labels_artifact(alternative.value_or(0))));
-    if (!loaded) {
-        return tl::unexpected(loaded.error());
-    }
-    GlbOptions options;
-    options.profile = profile;
-    const auto glb = write_glb(whole_scene(loaded->model), options);
-    if (!glb) {
-        return tl::unexpected(proto::problem_of(glb.error()));
-    }
-    const auto pin = artifacts_.put(*glb);
+    const auto pin = artifacts_.put(bytes);
     if (!pin) {
         return tl::unexpected(problem_of(pin.error()));
     }
@@ -392,6 +380,65 @@ Parsed<std::string> JobService::model_digest(
         return tl::unexpected(problem_of(linked.error()));
     }
     return (*pin)->digest();
+}
+
+Parsed<std::string> JobService::model_digest(const std::string& id, const ModelFile& file) {
+    const auto job = find_with_model(id, file.alternative);
+    if (!job) {
+        return tl::unexpected(job.error());
+    }
+    const std::string name = artifact_name(file);
+    const auto known = jobs_.artifact(id, name);
+    if (known) {
+        return *known;
+    }
+    const auto loaded =
+        load_model(*job, load_artifact(id, labels_artifact(file.alternative.value_or(0))));
+    if (!loaded) {
+        return tl::unexpected(loaded.error());
+    }
+    GlbOptions options;
+    options.profile = file.profile;
+    options.compression = file.compression;
+    const auto glb = write_glb(whole_scene(loaded->model), options);
+    return glb ? keep(id, name, *glb) : tl::unexpected(proto::problem_of(glb.error()));
+}
+
+Parsed<std::string> JobService::gzipped_model_digest(const std::string& id, const ModelFile& file) {
+    const auto digest = model_digest(id, file);
+    if (!digest) {
+        return digest;
+    }
+    const std::string name = gzipped_artifact(artifact_name(file));
+    const auto known = jobs_.artifact(id, name);
+    if (known) {
+        return *known;
+    }
+    return gzip_artifact(*digest).and_then([&](const std::string& bytes) {
+        return keep(id, name, bytes);
+    });
+}
+
+Parsed<std::string> JobService::gzip_artifact(const std::string& digest) {
+    constexpr std::uint64_t kPiece = 256 * 1024;
+    const auto reader = artifacts_.open(digest);
+    if (!reader) {
+        return tl::unexpected(problem_of(reader.error()));
+    }
+    const std::uint64_t size = (*reader)->size();
+    if (size > kGzippedBytesMax) {
+        return tl::unexpected(make_problem("too-large", "the file is too large to be coded"));
+    }
+    GzipWriter writer;
+    std::string piece;
+    for (std::uint64_t at = 0; at < size; at += piece.size()) {
+        piece.resize(std::min(kPiece, size - at));
+        if (const auto read = (*reader)->read(at, piece); !read) {
+            return tl::unexpected(problem_of(read.error()));
+        }
+        writer.append(piece);
+    }
+    return writer.finish();
 }
 
 std::optional<LiveJob::State> JobService::whole_state(const std::string& id, std::uint64_t seq) {

@@ -76,16 +76,30 @@ class JobService {
     [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
     [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
 
-    // The finished model's file in a profile, made on first use and kept with the job. Of several
-    // the first; an alternative that is named is there as soon as it is made, whatever becomes of
-    // the job.
+    // Coding this much takes some ten seconds, while the client waits for its first byte.
+    static constexpr std::uint64_t kGzippedBytesMax = std::uint64_t{256} << 20;
+
+    // Which file of a finished model. Of several models the first; an alternative that is named is
+    // there as soon as it is made, whatever becomes of the job.
+    struct ModelFile {
+        GlbProfile profile = GlbProfile::kNodes;
+        GlbCompression compression = GlbCompression::kNone;
+        std::optional<std::uint32_t> alternative;
+    };
+
+    // The file's digest. It is made on first use and kept with the job.
     // Fails: not-found, not-finished, no-model, expired, too-large.
     [[nodiscard]] proto::Parsed<std::string> model_digest(
-        const std::string& id, GlbProfile profile, const std::optional<std::uint32_t>& alternative
+        const std::string& id, const ModelFile& file
+    );
+    // That of the file coded with gzip, kept as it is.
+    // Fails: as above; too-large for files of more than kGzippedBytesMax.
+    [[nodiscard]] proto::Parsed<std::string> gzipped_model_digest(
+        const std::string& id, const ModelFile& file
     );
     // The model as far as it is. Fails: not-found, not-finished before the first accepted block.
     [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
-    // Which and fails: as model_digest(); not-found where the model has no cells.
+    // Which: as for a ModelFile. Fails: as model_digest(); not-found where the model has no cells.
     [[nodiscard]] proto::Parsed<std::string> labels_json(
         const std::string& id, const std::optional<std::uint32_t>& alternative
     );
@@ -130,6 +144,12 @@ class JobService {
     // The request as it was accepted; its example is found even when it was deleted since.
     [[nodiscard]] proto::Parsed<proto::JobRequest> read_request(const proto::Job& job);
     [[nodiscard]] Stored<std::string> load_artifact(const std::string& id, const std::string& name);
+    // Keeps the bytes as an artifact of the job and returns their digest.
+    [[nodiscard]] proto::Parsed<std::string> keep(
+        const std::string& id, const std::string& name, std::string_view bytes
+    );
+    // A stored artifact coded with gzip.
+    [[nodiscard]] proto::Parsed<std::string> gzip_artifact(const std::string& digest);
     // The newest labels, as far as the store tells them; see newest_model() for jobs that run.
     [[nodiscard]] Stored<std::string> load_newest_labels(const proto::Job& job);
     // Fails: not-finished before the first accepted block.

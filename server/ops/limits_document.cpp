@@ -82,7 +82,7 @@ std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
         ),
         limit(
             "prefer_wait_seconds_max",
-            kPreferredWaitSecondsMax,
+            kWaitSecondsMax,
             "seconds",
             "That Prefer: wait is granted; more is taken for this."
         ),

@@ -12,8 +12,10 @@ std::string numbered(const std::string& name, std::uint32_t alternative) {
 
 std::string labels_artifact(std::uint32_t alternative) { return numbered("labels", alternative); }
 
-std::string model_artifact(const std::string& profile, std::uint32_t alternative) {
-    return numbered(profile + ".glb", alternative);
+std::string model_artifact(const std::string& form, std::uint32_t alternative) {
+    return numbered(form + ".glb", alternative);
 }
+
+std::string gzipped_artifact(const std::string& name) { return name + ".gz"; }
 
 }  // namespace modelsynth::server

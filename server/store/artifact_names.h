@@ -16,9 +16,13 @@ inline constexpr const char* kOriginArtifact = "origin";
 // The labels of a model that was not finished, when the job ended.
 inline constexpr const char* kPreviewArtifact = "preview";
 
-// The labels of the job's model, and its file in a profile ("nodes", "instanced", "merged"); where
-// it has several, the first one's have the names that those of a single one would have.
+// The labels of the job's model, and its file in a form: a profile ("nodes", "instanced",
+// "merged"), or one with its compression ("nodes.meshopt"); where it has several, the first one's
+// have the names that those of a single one would have.
 [[nodiscard]] std::string labels_artifact(std::uint32_t alternative = 0);
-[[nodiscard]] std::string model_artifact(const std::string& profile, std::uint32_t alternative = 0);
+[[nodiscard]] std::string model_artifact(const std::string& form, std::uint32_t alternative = 0);
+
+// An artifact of that name, coded with gzip.
+[[nodiscard]] std::string gzipped_artifact(const std::string& name);
 
 }  // namespace modelsynth::server

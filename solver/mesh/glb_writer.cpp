@@ -2,6 +2,7 @@
 
 #include "solver/mesh/gltf_buffer.h"
 #include "solver/mesh/gltf_nodes.h"
+#include "solver/mesh/meshopt_compression.h"
 #include "solver/mesh/turn.h"
 
 #include <algorithm>
@@ -336,14 +337,39 @@ void append_u32(std::string& text, std::size_t value) {
     }
 }
 
+tl::unexpected<Error> too_large(std::size_t bytes_max) {
+    return tl::unexpected(Error{
+        ErrorCode::kTooLarge,
+        "the model would be larger than " + std::to_string(bytes_max) + " bytes",
+        {}});
+}
+
+// Takes the buffer out of the model. Returns the binary chunk; what the JSON is to tell of it
+// beyond what tinygltf writes goes to `inserted`.
+std::vector<unsigned char> take_binary(
+    tinygltf::Model& model, GlbCompression compression, std::string& inserted
+) {
+    std::vector<unsigned char> binary;
+    if (compression == GlbCompression::kMeshopt && !model.bufferViews.empty()) {
+        CompressedBuffers compressed = compress_buffers(model);
+        binary = std::move(compressed.binary);
+        inserted += "\"buffers\":" + compressed.buffers + ",";
+        inserted += "\"bufferViews\":" + compressed.buffer_views + ",";
+        model.bufferViews.clear();
+        model.extensionsUsed.emplace_back(kMeshoptExtension);
+        model.extensionsRequired.emplace_back(kMeshoptExtension);
+    } else {
+        binary = std::move(model.buffers[0].data);
+        if (!binary.empty()) {
+            inserted += "\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}],";
+        }
+    }
+    model.buffers.clear();
+    return binary;
+}
+
 // The GLB container around tinygltf's JSON, with our nodes put into it.
-Result<std::string> assemble(Document& document, std::size_t bytes_max) {
-    const auto too_large = [bytes_max] {
-        return tl::unexpected(Error{
-            ErrorCode::kTooLarge,
-            "the model would be larger than " + std::to_string(bytes_max) + " bytes",
-            {}});
-    };
+Result<std::string> assemble(Document& document, const GlbOptions& options) {
     GltfNodes scenes;
     scenes.begin();
     if (!document.roots.empty()) {
@@ -355,23 +381,20 @@ Result<std::string> assemble(Document& document, std::size_t bytes_max) {
     if (document.nodes.count() > 0) {
         inserted += "\"nodes\":[" + document.nodes.take() + "],";
     }
-    const std::vector<unsigned char> binary = std::move(document.model.buffers[0].data);
-    document.model.buffers.clear();
+    const std::vector<unsigned char> binary =
+        take_binary(document.model, options.compression, inserted);
     std::ostringstream stream;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model, stream, false, false);
     std::string json = std::move(stream).str();
     while (!json.empty() && json.back() != '}') {
         json.pop_back();  // a final line break
     }
-    if (!binary.empty()) {
-        inserted += "\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}],";
-    }
     json.insert(1, inserted);
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size();
     total += binary.empty() ? 0 : kChunkHeaderBytes + binary.size();
-    if (total > bytes_max) {
-        return too_large();
+    if (total > options.bytes_max) {
+        return too_large(options.bytes_max);
     }
     std::string glb;
     glb.reserve(total);
@@ -406,12 +429,9 @@ Result<std::string> write_glb(const Scene& scene, const GlbOptions& options) {
             break;
     }
     if (!fits || document.nodes.bytes() > options.bytes_max) {
-        return tl::unexpected(Error{
-            ErrorCode::kTooLarge,
-            "the model would be larger than " + std::to_string(options.bytes_max) + " bytes",
-            {}});
+        return too_large(options.bytes_max);
     }
-    return assemble(document, options.bytes_max);
+    return assemble(document, options);
 }
 
 }  // namespace modelsynth

@@ -15,8 +15,15 @@ enum class GlbProfile : std::uint8_t {
     kMerged,     // core glTF, one mesh per group with its materials' primitives joined; large
 };
 
+// How the numbers of meshes and instances are kept.
+enum class GlbCompression : std::uint8_t {
+    kNone,
+    kMeshopt,  // EXT_meshopt_compression, required; decoded, every byte is as with kNone
+};
+
 struct GlbOptions {
     GlbProfile profile = GlbProfile::kNodes;
+    GlbCompression compression = GlbCompression::kNone;
     // kNodes: instance nodes are named as their piece. Names cost bytes, so models have them as
     // extras only.
     bool named_nodes = false;

@@ -110,6 +110,12 @@ Result<tinygltf::Model> parse_document(std::span<const std::byte> bytes) {
         reinterpret_cast<const unsigned char*>(bytes.data()),
         static_cast<unsigned int>(bytes.size())
     );
+    // Such a file may well fail for what its extension allows.
+    if (!model.extensionsRequired.empty()) {
+        return tl::unexpected(invalid_glb(
+            "requires the extension " + model.extensionsRequired.front() + ", which is not taken"
+        ));
+    }
     if (!loaded) {
         if (errors.find("json.exception") != std::string::npos) {
             return tl::unexpected(invalid_glb("its JSON is malformed"));
@@ -137,11 +143,6 @@ Result<tinygltf::Model> parse_glb(std::span<const std::byte> bytes, const GlbRea
     auto model = parse_document(bytes);
     if (!model) {
         return model;
-    }
-    if (!model->extensionsRequired.empty()) {
-        return tl::unexpected(invalid_glb(
-            "requires the extension " + model->extensionsRequired.front() + ", which is not taken"
-        ));
     }
     if (model->nodes.size() > limits.nodes_max) {
         return tl::unexpected(

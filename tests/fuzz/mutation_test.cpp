@@ -6,6 +6,7 @@
 #include "proto/frame.h"
 #include "proto/image_mask.h"
 #include "proto/job_request.h"
+#include "server/http/content_coding.h"
 #include "server/http/head_check.h"
 #include "server/http/message.h"
 #include "solver/continuous/scene.h"
@@ -437,6 +438,14 @@ TEST(Fuzz, RequestTargetsAndHeads) {
                 : text.substr(space + 1, text.find(' ', space + 1) - space - 1);
         const bool fine = server::parse_target(target, request);
         return fine && !server::check_raw_head(text);
+    });
+}
+
+TEST(Fuzz, AcceptedCodings) {
+    fuzz("gzip;q=0.875, identity ; q=0.25,br;q=1.000 , *;q=0", 17, [](const std::string& text) {
+        const auto accepted = server::parse_accept_encoding(text);
+        EXPECT_TRUE(accepted.gzip || !accepted.prefers_gzip);
+        return accepted.gzip;
     });
 }
 

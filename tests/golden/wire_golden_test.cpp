@@ -47,6 +47,7 @@ Job queued_job() {
     job.created = 1714566600250;
     job.request = request().echo;
     job.queue_position = 3;
+    job.head = 1;
     return job;
 }
 
@@ -58,11 +59,13 @@ TEST(Golden, Jobs) {
     job.started = job.created + 40;
     job.blocks_done = 3;
     job.blocks_total = 8;
+    job.head = 5;
     text += to_json(job) + "\n";
     job.state = JobState::kSucceeded;
     job.finished = job.created + 1234;
     job.expires = job.created + 86'400'000;
     job.blocks_done = 8;
+    job.head = 11;
     job.result = to_json(JobResult{
         job.id,
         123456,

@@ -26,7 +26,7 @@ def tools():
     if shutil.which("npm") is None or shutil.which("node") is None:
         pytest.skip("node and npm are not installed")
     installed = TOOLS / "node_modules"
-    if not (installed / "three").exists() or not (installed / "gltf-validator").exists():
+    if not all((installed / name).exists() for name in ("three", "gltf-validator", "meshoptimizer")):
         subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts"], cwd=TOOLS,
                        check=True, timeout=300, capture_output=True)
     return TOOLS

@@ -102,12 +102,6 @@ def test_a_wrong_query_for_a_model_is_refused(model, query, statuses):
     assert_problem(answer, answer.status, instance=job["urls"]["model"])
 
 
-@pytest.mark.xfail(strict=True, reason="meshopt compression is in the contract, not yet built")
-def test_a_model_can_be_had_compressed(model):
-    _, job, _ = model
-    assert get(model, f"{job['urls']['model']}?profile=instanced&compression=meshopt").status == 200
-
-
 # --- conditions (RFC 9110, section 13)
 
 def conditions(tag):

@@ -1,9 +1,12 @@
 // Loads the GLB files named on the command line with three's GLTFLoader, as a browser would, and
 // prints, as one JSON object, what is drawn: path -> { meshes, instances: [[x, y, z, yaw], ...],
-// triangles }. `meshes` counts the objects; `instances` is the place of each mesh that is drawn in
-// the world, instanced or not, with its turn about y in quarters.
+// triangles, geometry }. `meshes` counts the objects; `instances` is the place of each mesh that is
+// drawn in the world, instanced or not, with its turn about y in quarters; `geometry` is a SHA-256
+// of the numbers of all vertices and triangles.
 
+import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
+import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
@@ -22,13 +25,25 @@ function placeOf(matrix) {
     return [position.x, position.y, position.z, quarters];
 }
 
+function addGeometry(hash, geometry) {
+    const named = Object.entries(geometry.attributes).sort(([a], [b]) => (a < b ? -1 : 1));
+    for (const [name, { array }] of [...named, ['index', geometry.index ?? { array: [] }]]) {
+        hash.update(`${name} ${array.constructor.name} ${array.length};`);
+        if (array.length > 0) {
+            hash.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+        }
+    }
+}
+
 function drawn(scene) {
     const found = { meshes: 0, instanced: 0, instances: [], triangles: 0 };
+    const hash = createHash('sha256');
     scene.updateMatrixWorld(true);
     scene.traverse((object) => {
         if (!object.isMesh) return;
         found.meshes += 1;
         const { geometry } = object;
+        addGeometry(hash, geometry);
         const triangles = (geometry.index ?? geometry.attributes.position).count / 3;
         const count = object.isInstancedMesh ? object.count : 1;
         found.instanced += object.isInstancedMesh ? 1 : 0;
@@ -39,14 +54,14 @@ function drawn(scene) {
             found.instances.push(placeOf(matrix.premultiply(object.matrixWorld)));
         }
     });
-    return found;
+    return { ...found, geometry: hash.digest('hex') };
 }
 
 const found = {};
 for (const path of process.argv.slice(2)) {
     const bytes = await readFile(path);
     const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-    const gltf = await new GLTFLoader().parseAsync(buffer, '');
+    const gltf = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).parseAsync(buffer, '');
     found[path] = drawn(gltf.scene);
 }
 console.log(JSON.stringify(found));
