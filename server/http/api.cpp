@@ -26,7 +26,7 @@ struct Route {
     BodyKind body = BodyKind::kOther;
 };
 
-constexpr std::array<Route, 24> kRoutes = {
+constexpr std::array<Route, 25> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -37,6 +37,7 @@ constexpr std::array<Route, 24> kRoutes = {
      {"GET", "/v1/jobs/{}/labels.json", get_labels},
      {"GET", "/v1/jobs/{}/events", get_events},
      {"GET", "/v1/jobs/{}/stream", get_stream},
+     {"GET", "/v1/stream", get_shared_stream},
      {"GET", "/v1/examples", list_examples},
      {"POST", "/v1/examples", upload_example, BodyKind::kUpload},
      {"GET", "/v1/examples/{}", get_example},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "proto/problem.h"
+#include "proto/stream_message.h"
 #include "server/store/artifact_store.h"
 
 #include <chrono>
@@ -45,15 +46,19 @@ struct FileBody {
 struct EventStreamBody {
     std::string job_id;
     std::uint64_t after = 0;
+    bool cancel_when_left = false;  // nobody else asked for the job and can ask for it again
 };
 
-enum class Partial : std::uint8_t { kNone, kLabels, kGlb };
-
-// The connection becomes a WebSocket.
-struct SocketUpgrade {
+// What a client wants to see of a job.
+struct JobStream {
     std::string job_id;
     std::uint64_t after = 0;
-    Partial partial = Partial::kNone;
+    proto::Partial partial = proto::Partial::kNone;
+};
+
+// The connection becomes a WebSocket: of one job, or of those that the client will name.
+struct SocketUpgrade {
+    std::optional<JobStream> job;
 };
 
 // The answer is held back until the job has ended or the time is up; then answer_with_job() makes
@@ -63,6 +68,7 @@ struct WaitForJob {
     std::chrono::milliseconds most = {};
     int status_ended = 200;
     int status_unfinished = 202;
+    bool cancel_when_left = false;  // as above
 };
 
 struct Response {

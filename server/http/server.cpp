@@ -1,6 +1,7 @@
 #include "server/http/server.h"
 
 #include "server/http/connection.h"
+#include "server/stream/frame_source.h"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -32,6 +33,7 @@ struct HttpServer::State {
           log(std::move(logger)),
           acceptor(io),
           signals(io),
+          frames(given_api.service()),
           pool(given.pool_threads) {}
 
     HttpConfig config;
@@ -41,6 +43,7 @@ struct HttpServer::State {
     tcp::acceptor acceptor;
     net::signal_set signals;
     ConnectionCounters counters;
+    FrameSource frames;
     net::thread_pool pool;  // last: its threads are joined while the rest still stands
 };
 
@@ -130,7 +133,7 @@ void HttpServer::run(const std::function<void()>& on_signal) {
         });
     });
     const ConnectionContext context = {
-        &state.api, &state.pool, &state.counters, state.config.limits, state.log};
+        &state.api, &state.pool, &state.counters, &state.frames, state.config.limits, state.log};
     net::co_spawn(
         state.io,
         accept_connections(state.acceptor, state.io, context, state.log),
