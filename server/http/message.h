@@ -46,7 +46,7 @@ struct FileBody {
 struct EventStreamBody {
     std::string job_id;
     std::uint64_t after = 0;
-    bool cancel_when_left = false;  // nobody else asked for the job and can ask for it again
+    bool cancel_when_left = false;  // the client has no way to find the job again
 };
 
 // What a client wants to see of a job.
