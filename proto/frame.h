@@ -28,6 +28,14 @@ namespace modelsynth::proto {
 //   44            payload: for labels a uint16 per cell of the region, x fastest, then z, then y,
 //                 65535 for a cell that is not made yet; for GLB a whole binary glTF file in the
 //                 frame of the whole model
+//
+// Where one WebSocket carries several jobs, frames have layout version 2, which says the job's id:
+//
+//   4       1     2
+//   6       2     bytes of the id, N
+//   44      N     the id, ASCII, then zeros up to a multiple of 4 bytes, then the payload
+//
+// and everything else as above.
 enum class FrameKind : std::uint8_t {
     kLabels = 1,
     kLabelsWhole = 2,
@@ -36,6 +44,7 @@ enum class FrameKind : std::uint8_t {
 };
 
 inline constexpr std::size_t kFrameHeaderBytes = 44;
+inline constexpr std::size_t kFrameJobIdBytesMax = 1024;
 
 struct Frame {
     FrameKind kind = FrameKind::kLabels;
@@ -44,10 +53,23 @@ struct Frame {
     std::string payload;
 };
 
+// What stands before the payload; with an id in version 2.
+// Requires: an id of at most kFrameJobIdBytesMax (checked).
+[[nodiscard]] std::string encode_frame_head(const Frame& frame);
+[[nodiscard]] std::string encode_frame_head(const Frame& frame, std::string_view job_id);
+
 [[nodiscard]] std::string encode_frame(const Frame& frame);
 
-// Nothing when the bytes are no whole frame of this version.
+// Nothing when the bytes are no whole frame of version 1.
 [[nodiscard]] std::optional<Frame> decode_frame(std::string_view bytes);
+
+struct NamedFrame {
+    std::string job_id;
+    Frame frame;
+};
+
+// The same for version 2.
+[[nodiscard]] std::optional<NamedFrame> decode_named_frame(std::string_view bytes);
 
 // Labels as a payload and back; nothing when the length is odd.
 [[nodiscard]] std::string encode_labels(std::span<const Label> labels);

@@ -87,6 +87,10 @@ Parsed<T> unless(Faults& faults, T value) {
 
 }  // namespace
 
+bool may(const KeyEntry& key, Scope scope) {
+    return std::find(key.scopes.begin(), key.scopes.end(), scope) != key.scopes.end();
+}
+
 Parsed<std::vector<KeyEntry>> parse_keys(std::string_view text) {
     const auto document = parse_json(text, {});
     if (!document) {

@@ -26,6 +26,8 @@ struct KeyEntry {
     std::optional<std::size_t> jobs;  // unfinished at once
 };
 
+[[nodiscard]] bool may(const KeyEntry& key, Scope scope);
+
 inline constexpr std::size_t kKeysMax = 10'000;
 
 // Reads a file of keys, {"keys": [...]}. Fails: malformed-json, invalid-request with every fault.

@@ -3,7 +3,6 @@
 #include "proto/timestamp.h"
 #include "server/http/request_fields.h"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -56,10 +55,6 @@ const char* scope_name(proto::Scope scope) {
             break;
     }
     return "admin";
-}
-
-bool has_scope(const proto::KeyEntry& key, proto::Scope scope) {
-    return std::find(key.scopes.begin(), key.scopes.end(), scope) != key.scopes.end();
 }
 
 }  // namespace
@@ -150,7 +145,7 @@ std::optional<Response> Admission::admit(Request& request, const Need& need) {
             return unauthorized(request);
         }
         request.caller.owner = key->name;
-        request.caller.sees_all = has_scope(*key, proto::Scope::kAdmin);
+        request.caller.sees_all = may(*key, proto::Scope::kAdmin);
         request.caller.unfinished_max = key->jobs.value_or(request.caller.unfinished_max);
     }
     if (need.takes_tickets) {
@@ -180,7 +175,7 @@ std::optional<Response> Admission::admit(Request& request, const Need& need) {
             return response;
         }
     }
-    if (!has_scope(*key, *need.scope)) {
+    if (!may(*key, *need.scope)) {
         return problem_response(
             make_problem(
                 "missing-scope",

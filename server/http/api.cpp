@@ -33,7 +33,8 @@ constexpr std::array<const char*, 7> kOpen = {
     "/healthz", "/readyz", "/problems/{}", "/openapi.json", "/asyncapi.json", "/docs", "/"};
 
 // What a browser opens without being able to send a key.
-constexpr std::array<const char*, 2> kStreams = {"/v1/jobs/{}/events", "/v1/jobs/{}/stream"};
+constexpr std::array<const char*, 3> kStreams = {
+    "/v1/jobs/{}/events", "/v1/jobs/{}/stream", "/v1/stream"};
 
 template <std::size_t N>
 bool is_among(const std::array<const char*, N>& paths, std::string_view path) {
@@ -53,7 +54,7 @@ Need need_of(const Route& route) {
     return need;
 }
 
-constexpr std::array<Route, 30> kRoutes = {
+constexpr std::array<Route, 31> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
      {"GET", "/v1/jobs/{}", get_job},
@@ -64,6 +65,7 @@ constexpr std::array<Route, 30> kRoutes = {
      {"GET", "/v1/jobs/{}/labels.json", get_labels},
      {"GET", "/v1/jobs/{}/events", get_events},
      {"GET", "/v1/jobs/{}/stream", get_stream},
+     {"GET", "/v1/stream", get_shared_stream},
      {"GET", "/v1/examples", list_examples},
      {"POST", "/v1/examples", upload_example, BodyKind::kUpload},
      {"GET", "/v1/examples/{}", get_example},

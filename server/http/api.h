@@ -25,6 +25,12 @@ struct HttpLimits {
     std::uint32_t write_seconds = 30;
     std::uint32_t requests_per_connection_max = 10'000;
     std::size_t connections_max = 4096;
+    // Streams: a WebSocket is pinged after half of this silence and closed after the whole, a
+    // comment is sent on an event stream after a quarter.
+    std::uint32_t stream_idle_seconds = 60;
+    int stream_send_buffer_bytes = 256 * 1024;  // of the kernel, which keeps twice as much
+    std::size_t stream_subscriptions_max = 64;  // jobs that one WebSocket follows at once
+    std::size_t stream_pending_max = 32;        // requests on one WebSocket that wait for answers
 };
 
 // The resources of the contract as functions from requests to answers. Knows no socket; calls

@@ -20,6 +20,7 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/status.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <poll.h>
 
 #include <algorithm>
 #include <array>
@@ -107,7 +108,10 @@ class Connection {
         auto handle = [this, &exchange] { return context_.api->handle(exchange.request); };
         Response response = co_await on_pool(*context_.pool, handle);
         if (response.wait) {
-            co_await wait_for_job(*response.wait);
+            const bool left = co_await wait_for_job(*response.wait);
+            if (left && response.wait->cancel_when_left) {
+                co_await cancel(response.wait->job_id);
+            }
             auto answer = [this, &exchange, &response] {
                 return context_.api->answer_with_job(exchange.request, response, *response.wait);
             };
@@ -320,51 +324,68 @@ class Connection {
         co_return std::get<0>(std::get<0>(outcome));
     }
 
+    // The job of a client that went away and was the only one who wanted it.
+    net::awaitable<void> cancel(const std::string job_id) {
+        auto work = [this, &job_id] { return context_.api->service().cancel(job_id); };
+        const auto cancelled = co_await on_pool(*context_.pool, work);
+        if (cancelled) {
+            context_.log->info("its client left job={}", job_id);
+        }
+    }
+
+    EventCursor::Source events() {
+        return {&context_.api->service().events(), context_.pool, stream_.get_executor()};
+    }
+
     // Waits until the job ended, or has the event that is waited for, the time is up or the client
-    // is gone.
-    net::awaitable<void> wait_for_job(const WaitForJob wait) {
-        EventCursor cursor(
-            context_.api->service().events(),
-            *context_.pool,
-            stream_.get_executor(),
-            wait.job_id,
-            wait.since.value_or(0)
-        );
+    // is gone; true: it is gone.
+    net::awaitable<bool> wait_for_job(const WaitForJob wait) {
+        EventCursor cursor(events(), wait.job_id, wait.since.value_or(0));
         const auto until = std::chrono::steady_clock::now() + wait.most;
         stream_.expires_never();
         for (;;) {
             const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
                 until - std::chrono::steady_clock::now()
             );
-            if (left.count() <= 0 || context_.counters->draining || peer_has_closed()) {
-                co_return;
+            if (context_.counters->draining) {
+                co_return false;
+            }
+            if (peer_has_closed()) {
+                co_return true;
+            }
+            if (left.count() <= 0) {
+                co_return false;
             }
             constexpr auto kSlice = std::chrono::milliseconds(500);
             const auto batch = co_await cursor.next(std::min(left, kSlice));
             const bool has_news = wait.since && !batch.page.events.empty();
             if (batch.gone || batch.finished || has_news) {
-                co_return;
+                co_return false;
             }
         }
     }
 
-    // Looks without reading: bytes of a next request may be there.
+    // Looks without reading: bytes of a next request may be there, before the end too. A client
+    // that only stops sending cannot be told from one that has gone, and counts as gone.
     bool peer_has_closed() {
-        ErrorCode error;
-        std::array<char, 1> byte = {};
-        stream_.socket().non_blocking(true, error);
-        const std::size_t count =
-            stream_.socket().receive(net::buffer(byte), net::socket_base::message_peek, error);
-        return (error && error != net::error::would_block) || (!error && count == 0);
+        pollfd state = {stream_.socket().native_handle(), POLLRDHUP, 0};
+        return ::poll(&state, 1, 0) > 0;
     }
 
     net::awaitable<bool> respond(Response response, Exchange& exchange, Parser& parser) {
         if (auto* upgrade = std::get_if<SocketUpgrade>(&response.body)) {
             handed_over_ = true;
-            auto session = serve_websocket(
-                std::move(stream_), parser.release(), std::move(*upgrade), context_
-            );
-            co_await std::move(session);
+            if (upgrade->job) {
+                auto session = serve_job_socket(
+                    std::move(stream_), parser.release(), std::move(*upgrade->job), context_
+                );
+                co_await std::move(session);
+            } else {
+                auto session = serve_shared_socket(
+                    std::move(stream_), parser.release(), std::move(*upgrade), context_
+                );
+                co_await std::move(session);
+            }
             co_return false;
         }
         if (auto* events = std::get_if<EventStreamBody>(&response.body)) {
@@ -385,11 +406,17 @@ class Connection {
         std::string text =
             "HTTP/1.1 " + std::to_string(response.status) + " " +
             std::string(http::obsolete_reason(static_cast<http::status>(response.status))) + "\r\n";
+        std::string vary;
         for (const Fields* fields : {&response.headers, &exchange.request.answer_fields}) {
             for (const auto& [name, value] : *fields) {
-                text += name + ": " + value + "\r\n";
+                if (name == "Vary") {
+                    vary += (vary.empty() ? "" : ", ") + value;
+                } else {
+                    text += name + ": " + value + "\r\n";
+                }
             }
         }
+        text += vary.empty() ? "" : "Vary: " + vary + "\r\n";
         text += "Server: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
         if (length) {
             text += "Content-Length: " + std::to_string(*length) + "\r\n";
@@ -481,22 +508,29 @@ class Connection {
         if (exchange.version >= 11) {
             response.headers.emplace_back("Transfer-Encoding", "chunked");
         }
+        ErrorCode ignored;
+        stream_.socket().set_option(
+            net::socket_base::send_buffer_size(context_.limits.stream_send_buffer_bytes), ignored
+        );
         const std::string head = head_text(response, exchange, std::nullopt);
-        if (!co_await write_bytes(head) || exchange.request.method == "HEAD") {
+        const bool open = co_await write_bytes(head);
+        if (exchange.request.method == "HEAD") {
             co_return;
         }
-        EventCursor cursor(
-            context_.api->service().events(),
-            *context_.pool,
-            stream_.get_executor(),
-            body.job_id,
-            body.after
-        );
+        EventCursor cursor(events(), body.job_id, body.after);
         Sink sink(*this, exchange);
-        if (co_await write_event_stream(sink, cursor, context_.counters->draining) &&
-            exchange.version >= 11) {
+        const EventStreamContext context = {
+            &context_.api->service(),
+            context_.pool,
+            &context_.counters->draining,
+            std::chrono::seconds(context_.limits.stream_idle_seconds) / 4};
+        const bool ended = open && co_await write_event_stream(sink, cursor, context);
+        if (ended && exchange.version >= 11) {
             static constexpr std::string_view kLastChunk = "0\r\n\r\n";
             co_await write_bytes(kLastChunk);
+        }
+        if (!ended && body.cancel_when_left) {
+            co_await cancel(body.job_id);
         }
     }
 

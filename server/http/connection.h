@@ -13,6 +13,8 @@
 
 namespace modelsynth::server {
 
+class FrameSource;
+
 // What all connections share.
 struct ConnectionCounters {
     std::atomic<std::size_t> open = 0;
@@ -24,6 +26,7 @@ struct ConnectionContext {
     Api* api;
     boost::asio::thread_pool* pool;
     ConnectionCounters* counters;
+    FrameSource* frames;
     HttpLimits limits;
     std::shared_ptr<spdlog::logger> log;
 };

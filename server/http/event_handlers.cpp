@@ -3,6 +3,7 @@
 #include "server/http/request_fields.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -86,6 +87,13 @@ bool has_cells(const Call& call) {
     return !job || solver_has_cells(job->solver);
 }
 
+Response upgrade(SocketUpgrade to) {
+    Response response;
+    response.status = 101;
+    response.body = std::move(to);
+    return response;
+}
+
 }  // namespace
 
 Response get_events(const Call& call) {
@@ -101,12 +109,16 @@ Response get_events(const Call& call) {
     if (page && page->ended && *after == page->head) {
         return {204, {}, std::string()};
     }
+    return event_stream_response({call.id, *after, false});
+}
+
+Response event_stream_response(EventStreamBody body) {
     Response response;
     response.headers = {
         {"Content-Type", "text/event-stream"},
         {"Cache-Control", "no-store"},
         {"X-Accel-Buffering", "no"}};
-    response.body = EventStreamBody{call.id, *after};
+    response.body = std::move(body);
     return response;
 }
 
@@ -121,27 +133,30 @@ Response get_stream(const Call& call) {
     if (!after) {
         return refuse(call, after.error());
     }
-    const std::string name = call.request.query_field("partial").value_or("none");
-    if (name != "none" && name != "labels" && name != "glb") {
+    const auto partial = proto::partial_of(call.request.query_field("partial").value_or("none"));
+    if (!partial) {
         return refuse(
             call, make_problem("invalid-request", "\"partial\" must be none, labels or glb")
         );
     }
-    if (name == "labels" && !has_cells(call)) {
+    if (*partial == proto::Partial::kLabels && !has_cells(call)) {
         return refuse(
             call,
             make_problem("invalid-request", "the job's model has no cells; \"partial\" may be glb")
         );
     }
-    Response response;
-    response.status = 101;
-    response.body = SocketUpgrade{
-        call.id,
-        *after,
-        name == "labels" ? Partial::kLabels
-        : name == "glb"  ? Partial::kGlb
-                         : Partial::kNone};
-    return response;
+    return upgrade({JobStream{call.id, *after, *partial}});
+}
+
+Response get_shared_stream(const Call& call) {
+    if (auto problem = check_query(call.request, {})) {
+        return refuse(call, *problem);
+    }
+    if (auto refusal = check_handshake(call)) {
+        return *refusal;
+    }
+    const auto& key = call.request.key;
+    return upgrade({std::nullopt, call.request.caller, !key || may(*key, proto::Scope::kSubmit)});
 }
 
 }  // namespace modelsynth::server

@@ -44,6 +44,9 @@ struct Call {
 // event_handlers.cpp
 [[nodiscard]] Response get_events(const Call& call);
 [[nodiscard]] Response get_stream(const Call& call);
+[[nodiscard]] Response get_shared_stream(const Call& call);
+// The events of a job from the one after `after` on, as an answer.
+[[nodiscard]] Response event_stream_response(EventStreamBody body);
 
 // example_handlers.cpp
 [[nodiscard]] Response list_examples(const Call& call);

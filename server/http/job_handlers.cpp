@@ -24,14 +24,20 @@ Response submit_job(const Call& call) {
     if (!submitted) {
         return refuse(call, submitted.error());
     }
-    Response response = json_response(202, proto::to_json(submitted->job));
+    // Who gave no key cannot ask for the job again and leaves no work behind by going away.
+    const bool cancel_when_left = key->empty();
+    const bool as_events = wants_event_stream(call.request);
+    Response response = as_events ? event_stream_response({submitted->job.id, 0, cancel_when_left})
+                                  : json_response(202, proto::to_json(submitted->job));
     response.headers.emplace_back("Location", "/v1/jobs/" + submitted->job.id);
     if (submitted->replayed) {
         response.headers.emplace_back("Idempotent-Replayed", "true");
     }
-    if (const auto seconds = preferred_wait(call.request)) {
+    const auto seconds = preferred_wait(call.request);
+    if (seconds && !as_events) {
         response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(*seconds));
-        response.wait = WaitForJob{submitted->job.id, std::chrono::seconds(*seconds), 200, 202};
+        response.wait = WaitForJob{
+            submitted->job.id, std::chrono::seconds(*seconds), 200, 202, cancel_when_left};
     }
     return response;
 }

@@ -2,6 +2,7 @@
 
 #include "proto/key_codec.h"
 #include "proto/problem.h"
+#include "proto/stream_message.h"
 #include "server/jobs/caller.h"
 #include "server/store/artifact_store.h"
 
@@ -50,15 +51,22 @@ struct FileBody {
 struct EventStreamBody {
     std::string job_id;
     std::uint64_t after = 0;
+    bool cancel_when_left = false;  // the client has no way to find the job again
 };
 
-enum class Partial : std::uint8_t { kNone, kLabels, kGlb };
-
-// The connection becomes a WebSocket.
-struct SocketUpgrade {
+// What a client wants to see of a job.
+struct JobStream {
     std::string job_id;
     std::uint64_t after = 0;
-    Partial partial = Partial::kNone;
+    proto::Partial partial = proto::Partial::kNone;
+};
+
+// The connection becomes a WebSocket: of one job, or of those that the client will name, as far as
+// it may know of them.
+struct SocketUpgrade {
+    std::optional<JobStream> job;
+    Caller caller = {};
+    bool may_cancel = true;
 };
 
 // The answer is held back until the job has ended or the time is up, or an event has come beyond
@@ -69,6 +77,7 @@ struct WaitForJob {
     int status_ended = 200;
     int status_unfinished = 202;
     std::optional<std::uint64_t> since = {};
+    bool cancel_when_left = false;  // as above
 };
 
 struct Response {

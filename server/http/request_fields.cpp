@@ -114,6 +114,36 @@ std::optional<std::uint64_t> preferred_wait(const Request& request) {
     return std::nullopt;
 }
 
+namespace {
+
+// The quality of an item of an Accept list (RFC 9110 12.4.2); what is malformed counts as 1.
+double quality_of(const std::string& item) {
+    const std::size_t at = item.find(";q=");
+    double quality = 1;
+    if (at != std::string::npos) {
+        const char* end = item.data() + item.size();
+        std::from_chars(item.data() + at + 3, end, quality);
+    }
+    return quality;
+}
+
+}  // namespace
+
+bool wants_event_stream(const Request& request) {
+    std::string wanted;
+    double best = 0;
+    for (const std::string& part : list_items(request.header_list("accept").value_or(""))) {
+        const std::string item = lower_case(part);
+        const std::string type = item.substr(0, item.find(';'));
+        const bool is_offered = type == "text/event-stream" || type == "application/json";
+        if (is_offered && quality_of(item) > best) {
+            wanted = type;
+            best = quality_of(item);
+        }
+    }
+    return wanted == "text/event-stream";
+}
+
 Parsed<std::string> idempotency_key(const Request& request) {
     std::string key = request.header("idempotency-key").value_or("");
     if (key.size() >= 2 && key.front() == '"' && key.back() == '"') {

@@ -48,6 +48,10 @@ inline constexpr std::size_t kIdempotencyKeyCharactersMax = 255;
 // wait=N of a Prefer header (RFC 7240), capped; a malformed preference is ignored.
 [[nodiscard]] std::optional<std::uint64_t> preferred_wait(const Request& request);
 
+// Whether the answer is wanted as an event stream: Accept names that, and JSON neither before it
+// nor with a higher quality. What only wildcards allow is not asked for.
+[[nodiscard]] bool wants_event_stream(const Request& request);
+
 // Empty: there is none.
 [[nodiscard]] proto::Parsed<std::string> idempotency_key(const Request& request);
 

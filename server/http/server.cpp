@@ -1,6 +1,7 @@
 #include "server/http/server.h"
 
 #include "server/http/connection.h"
+#include "server/stream/frame_source.h"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -33,6 +34,7 @@ struct HttpServer::State {
           acceptor(io),
           signals(io),
           hangups(io, SIGHUP),
+          frames(given_api.service()),
           pool(given.pool_threads) {}
 
     HttpConfig config;
@@ -43,6 +45,7 @@ struct HttpServer::State {
     net::signal_set signals;
     net::signal_set hangups;
     ConnectionCounters counters;
+    FrameSource frames;
     net::thread_pool pool;  // last: its threads are joined while the rest still stands
 };
 
@@ -146,7 +149,7 @@ void HttpServer::run(
         });
     });
     const ConnectionContext context = {
-        &state.api, &state.pool, &state.counters, state.config.limits, state.log};
+        &state.api, &state.pool, &state.counters, &state.frames, state.config.limits, state.log};
     net::co_spawn(
         state.io,
         accept_connections(state.acceptor, state.io, context, state.log),

@@ -118,6 +118,20 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     app.add_option("--idle-seconds", config.http.limits.idle_seconds, "Between two requests")
         ->check(CLI::Range(1, 3600))
         ->capture_default_str();
+    app.add_option(
+           "--write-seconds",
+           config.http.limits.write_seconds,
+           "For a client to take what is written to it"
+    )
+        ->check(CLI::Range(1, 3600))
+        ->capture_default_str();
+    app.add_option(
+           "--stream-idle-seconds",
+           config.http.limits.stream_idle_seconds,
+           "Until a silent WebSocket is closed; heartbeats come several times in it"
+    )
+        ->check(CLI::Range(4, 3600))
+        ->capture_default_str();
     try {
         app.parse(argc, argv);
         const std::string wrong =

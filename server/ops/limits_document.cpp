@@ -2,9 +2,9 @@
 
 #include "proto/limit_codec.h"
 #include "proto/limits.h"
+#include "proto/stream_message.h"
 #include "server/http/handlers.h"
 #include "server/http/request_fields.h"
-#include "server/stream/stream_limits.h"
 #include "solver/mesh/glb_writer.h"
 
 #include <vector>
@@ -68,6 +68,36 @@ std::vector<Limit> limits_of_connections(const HttpLimits& http) {
             "bytes",
             "Of any other body; 413 beyond."
         ),
+        limit(
+            "socket_message_bytes_max",
+            proto::kStreamMessageBytesMax,
+            "bytes",
+            "Of a message to a WebSocket; closed with 1009 beyond."
+        ),
+        limit(
+            "socket_idle_seconds",
+            http.stream_idle_seconds,
+            "seconds",
+            "Without a sign of a WebSocket's client; pings are sent before."
+        ),
+        limit(
+            "event_stream_heartbeat_seconds",
+            http.stream_idle_seconds / 4,
+            "seconds",
+            "Between two signs of life of an event stream."
+        ),
+        limit(
+            "stream_subscriptions_max",
+            http.stream_subscriptions_max,
+            "jobs",
+            "That one WebSocket of /v1/stream follows at once."
+        ),
+        limit(
+            "stream_pending_max",
+            http.stream_pending_max,
+            "messages",
+            "To /v1/stream that wait for answers; more are not read meanwhile."
+        ),
     };
 }
 
@@ -110,24 +140,6 @@ std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
             ExampleAnalyses::kSecondsMax,
             "seconds",
             "That an example is analysed; 422 too-large beyond."
-        ),
-        limit(
-            "socket_message_bytes_max",
-            kSocketMessageBytesMax,
-            "bytes",
-            "Of a message to a WebSocket; closed with 1009 beyond."
-        ),
-        limit(
-            "socket_idle_seconds",
-            kSocketIdleSeconds,
-            "seconds",
-            "Without a sign of a WebSocket's client; pings are sent before."
-        ),
-        limit(
-            "event_stream_heartbeat_seconds",
-            kEventStreamHeartbeatSeconds,
-            "seconds",
-            "Between two signs of life of an event stream."
         ),
         limit("problem_errors_max", proto::kFaultsMax, "errors", "Listed in one problem document."),
     };

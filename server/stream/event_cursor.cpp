@@ -2,74 +2,74 @@
 
 #include "server/stream/on_pool.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include <utility>
 
 namespace modelsynth::server {
 
 // Outlives the cursor in handlers that are on their way.
-struct EventCursor::Signal {
-    explicit Signal(const net::any_io_executor& executor) : timer(executor) {}
+struct EventCursor::News {
+    explicit News(std::shared_ptr<WakeSignal> raised) : signal(std::move(raised)) {}
 
-    net::steady_timer timer;
-    bool raised = false;
+    std::shared_ptr<WakeSignal> signal;
+    bool is_there = true;
 };
 
 EventCursor::EventCursor(
-    EventLog& log,
-    net::thread_pool& pool,
-    const net::any_io_executor& executor,
+    const Source& source,
     std::string job_id,
-    std::uint64_t after
+    std::uint64_t after,
+    std::shared_ptr<WakeSignal> signal
 )
-    : log_(log),
-      pool_(pool),
+    : log_(*source.log),
+      pool_(*source.pool),
       job_id_(std::move(job_id)),
       position_(after),
-      signal_(std::make_shared<Signal>(executor)),
-      subscription_(log.subscribe(job_id_, [signal = signal_, executor] {
-          net::post(executor, [signal] {
-              signal->raised = true;
-              signal->timer.cancel();
+      news_(std::make_shared<News>(std::move(signal))),
+      subscription_(log_.subscribe(job_id_, [news = news_, executor = source.executor] {
+          net::post(executor, [news] {
+              news->is_there = true;
+              news->signal->raise();
           });
       })) {}
 
+EventCursor::EventCursor(const Source& source, std::string job_id, std::uint64_t after)
+    : EventCursor(source, std::move(job_id), after, std::make_shared<WakeSignal>(source.executor)) {
+}
+
 EventCursor::~EventCursor() = default;
 
-void EventCursor::wake() {
-    signal_->raised = true;
-    signal_->timer.cancel();
+bool EventCursor::has_news() const { return news_->is_there; }
+
+net::awaitable<EventCursor::Batch> EventCursor::poll(std::size_t events_max) {
+    news_->is_there = false;
+    auto read = [this, events_max] { return log_.read(job_id_, position_, events_max); };
+    auto page = co_await on_pool(pool_, read);
+    Batch batch;
+    if (!page) {
+        batch.gone = true;
+        co_return batch;
+    }
+    if (!page->events.empty()) {
+        position_ = page->events.back().seq;
+    }
+    batch.finished = page->ended && position_ >= page->head;
+    batch.page = std::move(*page);
+    co_return batch;
 }
 
 net::awaitable<EventCursor::Batch> EventCursor::next(std::chrono::milliseconds most) {
     constexpr std::size_t kPage = 256;
     const auto until = std::chrono::steady_clock::now() + most;
     for (;;) {
-        signal_->raised = false;
-        auto read = [this] { return log_.read(job_id_, position_, kPage); };
-        auto page = co_await on_pool(pool_, read);
-        Batch batch;
-        if (!page) {
-            batch.gone = true;
-            co_return batch;
-        }
-        if (!page->events.empty()) {
-            position_ = page->events.back().seq;
-        }
-        batch.finished = page->ended && position_ >= page->head;
-        batch.page = std::move(*page);
+        news_->signal->lower();
+        auto batch = co_await poll(kPage);
         const bool out_of_time = std::chrono::steady_clock::now() >= until;
-        if (!batch.page.events.empty() || batch.finished || out_of_time) {
+        if (!batch.page.events.empty() || batch.finished || batch.gone || out_of_time) {
             co_return batch;
         }
-        if (!signal_->raised) {
-            signal_->timer.expires_at(until);
-            constexpr auto kToken = net::as_tuple(net::use_awaitable);
-            co_await signal_->timer.async_wait(kToken);
-        }
+        co_await news_->signal->wait_until(until);
     }
 }
 

@@ -8,13 +8,20 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 
-#include <string>
-
 namespace modelsynth::server {
 
-// Turns the connection into a WebSocket and sends the job's events on it, with frames of what
-// blocks changed where the client wants them, until the log has ended or the client is gone.
-boost::asio::awaitable<void> serve_websocket(
+// Turns the connection into a WebSocket and sends the job's events on it, until the log has ended
+// or the client is gone. Clients send nothing.
+boost::asio::awaitable<void> serve_job_socket(
+    boost::beast::tcp_stream stream,
+    boost::beast::http::request<boost::beast::http::string_body> request,
+    JobStream wanted,
+    ConnectionContext context
+);
+
+// Turns the connection into a WebSocket for many jobs, which the client names in messages
+// (proto/streams.md), until the client is gone. `upgrade`: on whose behalf.
+boost::asio::awaitable<void> serve_shared_socket(
     boost::beast::tcp_stream stream,
     boost::beast::http::request<boost::beast::http::string_body> request,
     SocketUpgrade upgrade,

@@ -56,6 +56,48 @@ def round_trip(port, seed):
     return time.perf_counter() - begun
 
 
+def cancel_to_next(port, seed):
+    """From sending the cancel of a big running job to the `started` event of the one that waits
+    behind it on the only worker."""
+    headers = {"Content-Type": "application/json"}
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+
+    def submit(size, blocks, wanted):
+        """The job's id and its stream, read up to the wanted event."""
+        wanted_line = f"event: {wanted}".encode()
+        connection.request("POST", "/v1/jobs", json.dumps({
+            **job(size, seed), "parameters": {"size": size, "blocks": blocks}}), headers)
+        identity = json.loads(connection.getresponse().read())["id"]
+        stream = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+        stream.request("GET", f"/v1/jobs/{identity}/events")
+        answer = stream.getresponse()
+        while not answer.readline().startswith(wanted_line):
+            pass
+        return identity, stream, answer
+
+    running, watching, _ = submit(
+        [300, 10, 300], {"size": [20, 10, 20], "overlap": 0.75, "passes": 60}, "block")
+    watching.close()
+    _, stream, events = submit([20, 8, 20], {}, "queued")
+    begun = time.perf_counter()
+    connection.request("POST", f"/v1/jobs/{running}/cancel")
+    while not events.readline().startswith(b"event: started"):
+        pass
+    taken = time.perf_counter() - begun
+    connection.getresponse().read()
+    events.read()
+    stream.close()
+    connection.close()
+    return taken
+
+
+def start(options, data, *more):
+    server = subprocess.Popen(
+        [options.bin / "modelsynthd", "--data", data, "--listen", "127.0.0.1:0",
+         "--log-level", "warn", *more], stdout=subprocess.PIPE, text=True)
+    return server, int(server.stdout.readline().rsplit(":", 1)[1])
+
+
 def peak_megabytes(process):
     status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
     return int(status.split("VmHWM:")[1].split()[0]) / 1024
@@ -67,11 +109,8 @@ def main():
     parser.add_argument("--rounds", default=15, type=int)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as data:
-        server = subprocess.Popen(
-            [options.bin / "modelsynthd", "--data", data, "--listen", "127.0.0.1:0",
-             "--log-level", "warn"], stdout=subprocess.PIPE, text=True)
+        server, port = start(options, data)
         try:
-            port = int(server.stdout.readline().rsplit(":", 1)[1])
             round_trip(port, 0)
             rows = [
                 ("request to first block event, castle 40x10x40",
@@ -82,6 +121,15 @@ def main():
             request(port, "POST", "/v1/jobs", job([200, 10, 200], 1))
             rows.append(("peak memory after castle 200x10x200", [peak_megabytes(server)], "MB",
                          200))
+        finally:
+            server.terminate()
+            server.wait(30)
+    with tempfile.TemporaryDirectory() as data:
+        server, port = start(options, data, "--workers", "1")
+        try:
+            rows.append(("cancel of castle 300x10x300 to the next job's started event, 1 worker",
+                         [cancel_to_next(port, seed) * 1000 for seed in range(options.rounds)],
+                         "ms", 50))
         finally:
             server.terminate()
             server.wait(30)

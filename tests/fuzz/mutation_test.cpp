@@ -6,6 +6,7 @@
 #include "proto/frame.h"
 #include "proto/image_mask.h"
 #include "proto/job_request.h"
+#include "proto/stream_message.h"
 #include "server/http/content_coding.h"
 #include "server/http/head_check.h"
 #include "server/http/message.h"
@@ -375,6 +376,41 @@ TEST(Fuzz, Frames) {
             EXPECT_EQ(proto::encode_frame(*decoded), text);
         }
         return decoded.has_value();
+    });
+}
+
+TEST(Fuzz, FramesThatNameTheirJob) {
+    const proto::Frame frame = {
+        proto::FrameKind::kLabels,
+        5,
+        {{0, 0, 0}, {1, 2, 1}},
+        proto::encode_labels(std::vector<Label>{1, 2})};
+    fuzz(
+        proto::encode_frame_head(frame, "job42") + frame.payload,
+        106,
+        [](const std::string& text) {
+            const auto decoded = proto::decode_named_frame(text);
+            if (decoded) {
+                EXPECT_EQ(
+                    proto::encode_frame_head(decoded->frame, decoded->job_id) +
+                        decoded->frame.payload,
+                    text
+                );
+            }
+            return decoded.has_value();
+        }
+    );
+}
+
+TEST(Fuzz, StreamRequests) {
+    const std::string request =
+        R"({"id": "a", "type": "subscribe", "job": "j1", "after": 3, "partial": "glb"})";
+    fuzz(request, 107, [](const std::string& text) {
+        const auto read = proto::parse_stream_request(text);
+        if (!read) {
+            EXPECT_FALSE(proto::refusal_json(read.error()).empty());
+        }
+        return read.has_value();
     });
 }
 

@@ -19,18 +19,29 @@ class Event(dict):
 
 
 class EventReader:
-    """One GET of a job's events. The fields `id` and `event` are checked against the data."""
+    """One GET of a job's events, or with a `submission` the POST of a job that is answered with
+    them. The fields `id` and `event` are checked against the data. `receive_buffer` makes it a slow
+    reader's."""
 
-    def __init__(self, port, job_id, query="", headers=None, version="1.1", timeout=60):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=timeout)
+    def __init__(self, port, job_id, query="", headers=None, version="1.1", timeout=60,
+                 receive_buffer=None, submission=None):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        if receive_buffer:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+        self.socket.settimeout(timeout)
+        self.socket.connect(("127.0.0.1", port))
         self.until = time.monotonic() + timeout
         self.raw = b""
         self.text = b""
         self.ended = False
         fields = {"Host": "127.0.0.1", **(headers or {})}
+        line, body = f"GET /v1/jobs/{job_id}/events{query}", b""
+        if submission is not None:
+            line, body = "POST /v1/jobs", json.dumps(submission).encode()
+            fields = {"Accept": "text/event-stream", "Content-Type": "application/json",
+                      "Content-Length": len(body), **fields}
         head = "".join(f"{name}: {value}\r\n" for name, value in fields.items())
-        self.socket.sendall(
-            f"GET /v1/jobs/{job_id}/events{query} HTTP/{version}\r\n{head}\r\n".encode())
+        self.socket.sendall(f"{line} HTTP/{version}\r\n{head}\r\n".encode() + body)
         lines = self._line(b"\r\n\r\n").decode("latin-1").split("\r\n")
         self.status = int(lines[0].split(" ")[1])
         self.headers = {}

@@ -282,17 +282,27 @@ def test_several_watchers_of_a_running_job_see_the_same_events(server):
 
 def test_watchers_who_join_in_the_middle_miss_nothing(server):
     job = submit(server, STEADY_JOB)
-    joined = []
+    joined, seen = [], {}
+
+    def read(after, late):
+        with late:
+            seen[after] = texts(late.rest())
+
     with EventReader(server.port, job["id"]) as reader:
         events = []
         for _ in range(5):
             events += reader.until_event(lambda event: event["seq"] % 400 == 0)
-            joined.append((len(events), EventReader(
-                server.port, job["id"], f"?after={len(events)}")))
+            after = len(events)
+            late = EventReader(server.port, job["id"], f"?after={after}")
+            # At once: who does not read for a while loses events.
+            joined.append(threading.Thread(target=read, args=(after, late)))
+            joined[-1].start()
         events += reader.rest()
-    for after, late in joined:
-        with late:
-            assert texts(late.rest()) == texts(events[after:])
+    for thread in joined:
+        thread.join(timeout=90)
+    assert len(seen) == len(joined)
+    for after, late in seen.items():
+        assert late == texts(events[after:])
 
 
 def test_a_reader_at_the_head_of_a_running_job_goes_on_with_the_next_event(server):

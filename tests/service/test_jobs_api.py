@@ -176,12 +176,14 @@ def test_a_job_that_fails_while_waited_for_is_answered_with_200(server):
     assert job["error"]["type"] == "/problems/contradiction"
 
 
-def test_a_client_that_stops_waiting_leaves_the_job_running(make_server):
+def test_a_client_that_stops_waiting_and_gave_a_key_leaves_the_job_in_the_queue(make_server):
+    """Without a key: see test_submit_stream.py."""
     server = make_server(workers=1)
     with endless_job(server):
         body = compact(job_request())
         with socket.create_connection(("127.0.0.1", server.port), timeout=10) as client:
             client.sendall(b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nPrefer: wait=60\r\n"
+                           b"Idempotency-Key: waiter-1\r\n"
                            b"Content-Length: %d\r\n\r\n" % len(body) + body)
             job = wait_until(lambda: next(
                 iter(server.get("/v1/jobs?state=queued").json()["items"]), None))

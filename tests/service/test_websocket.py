@@ -189,6 +189,20 @@ def test_reading_after_k_gives_exactly_the_tail_for_every_k(server, finished):
         assert messages[-1].close_code == 1000
 
 
+@pytest.mark.parametrize("after", [0, 9, 1000000])
+def test_last_event_id_wins_over_after(server, finished, after):
+    job, events = finished
+    with connect(server, job, after=after, headers={"Last-Event-ID": "4"}) as client:
+        assert client.messages()[:-1] == events[4:]
+
+
+def test_one_event_beyond_the_last_is_refused(server, finished):
+    job, events = finished
+    with pytest.raises(HandshakeRefused) as refused:
+        connect(server, job, after=len(events) + 1)
+    assert refused.value.status == 422
+
+
 def test_a_cancelled_job_ends_with_cancelled_and_1000(server):
     job = submit(server, ENDLESS_JOB)
     with connect(server, job) as client:

@@ -249,6 +249,18 @@ class StateFrame:
         return list(struct.unpack(f"<{len(self.payload) // 2}H", self.payload))
 
 
+class NamedStateFrame(StateFrame):
+    """A binary frame of the WebSocket for many jobs: layout version 2, with the job's id."""
+
+    def __init__(self, data):
+        assert data[4] == 2
+        (length,) = struct.unpack_from("<H", data, 6)
+        end = 44 + (length + 3) // 4 * 4
+        self.job_id = data[44:44 + length].decode("ascii")
+        assert data[44 + length:end] == b"\0" * (end - 44 - length)
+        super().__init__(data[:4] + b"\1" + data[5:6] + b"\0\0" + data[8:44] + data[end:])
+
+
 class LabelGrid:
     """The model as the frames tell it."""
 
