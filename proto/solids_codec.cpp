@@ -9,11 +9,9 @@
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/faults.h"
 #include "solver/continuous/import/default_spacing.h"
-#include "solver/continuous/import/mesh_import.h"
 #include "solver/continuous/shapes/cut_boxes.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -444,26 +442,6 @@ OrderedJson solids_resource(const ExampleReading& reading, const std::string& id
     OrderedJson resource = solids_summary(reading, id, built_in);
     resource.update(write_solids(reading.example()));
     return resource;
-}
-
-Parsed<ExampleUpload> parse_example_glb(std::string_view bytes, const RequestLimits& limits) {
-    const auto refusal = [](const Error& error) {
-        Problem problem = problem_of(error);
-        if (error.code == ErrorCode::kInvalidArgument) {
-            problem.detail = "the example cannot be used: " + problem.detail;
-        }
-        return tl::unexpected(std::move(problem));
-    };
-    auto example = continuous::read_example_glb(std::as_bytes(std::span(bytes)));
-    if (!example) {
-        return refusal(example.error());
-    }
-    if (example->name.empty()) {
-        example->name = "solids";
-    }
-    // Kept as what it says, so that it can be shown and sent again like any other.
-    const std::string text = dump(Json::parse(dump(write_solids(*example))));
-    return parse_example(text, limits);
 }
 
 }  // namespace modelsynth::proto
