@@ -186,12 +186,13 @@ class Importer {
 
     // Looks like the object that it would be a solid of, or just like what it decorates.
     void read_decoration(std::size_t node) {
-        const Primitive& first = mesh_of(node).primitives.front();
         const GlbNode& source = scene_.nodes[node];
+        const std::vector<Primitive>& primitives = mesh_of(node).primitives;
         const auto own = materials_.find(decorated_object(source));
-        const bool looks_so = source.extras.find("object") == nullptr && own != materials_.end() &&
-                              own->second == first.material;
-        attachments_.add_decoration(node, looks_so ? kEmpty : object_of(node, first));
+        const bool looks_so = primitives.empty() ||
+                              (source.extras.find("object") == nullptr && own != materials_.end() &&
+                               own->second == primitives.front().material);
+        attachments_.add_decoration(node, looks_so ? kEmpty : object_of(node, primitives.front()));
     }
 
     // Whether a node is no solid but stands for the ground.

@@ -155,10 +155,11 @@ FromMesh<Shape> shape_of_mesh(std::vector<Point> places) {
 
 FromMesh<std::vector<ProfilePoint>> profile_of_mesh(std::vector<Point> places) {
     const Welded mesh = welded(std::move(places));
-    const auto [low, high] = std::minmax_element(
-        mesh.points.begin(), mesh.points.end(), [](auto& a, auto& b) { return a.z() < b.z(); }
-    );
-    if (mesh.triangles.empty() || high->z() - low->z() > 2 * kWeldTolerance * mesh.extent) {
+    Eigen::AlignedBox3d box;
+    for (const Point& point : mesh.points) {
+        box.extend(point);
+    }
+    if (mesh.triangles.empty() || box.sizes().z() > 2 * kWeldTolerance * mesh.extent) {
         return tl::unexpected<std::string>(
             " is to be swept along edges, but is no flat mesh that faces along z of glTF"
         );
