@@ -291,14 +291,19 @@ class SolidsReader {
 };
 
 // False when its models could not keep to them. They come first in those of its models.
-bool check_constraints(const ExampleReading& reading, const Value& value) {
-    const std::size_t count = reading.example().constraints.size();
+bool check_constraints(const std::shared_ptr<const ExampleReading>& plain, const Value& value) {
+    const std::size_t count = plain->example().constraints.size();
     if (count == 0) {
         return true;
     }
-    continuous::Parameters usual = continuous::fill_defaults({}, reading.example());
+    continuous::Parameters usual = continuous::fill_defaults({}, plain->example());
+    const auto reading = ExampleReading::read_for(plain, usual);
+    if (!reading) {
+        value.fault(reading.error().message, reading.error().code == ErrorCode::kTooLarge);
+        return false;
+    }
     usual.constraints->resize(count);
-    std::vector<Fault> faults = continuous::find_faults(reading, usual);
+    std::vector<Fault> faults = continuous::find_faults(**reading, usual);
     std::erase_if(faults, [](const Fault& fault) {
         return !fault.pointer.starts_with("/constraints/");
     });
@@ -344,7 +349,7 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
         value.faults().add_all(value.pointer(), reading.error().faults);
         return nullptr;
     }
-    if (!check_constraints(**reading, value)) {
+    if (!check_constraints(*reading, value)) {
         return nullptr;
     }
     return std::move(*reading);
