@@ -102,7 +102,7 @@ def test_constraints_name_it_as_one_object(server):
 
 # A wedge that is high in the north-west: not like any image of it.
 WEDGE = {"vertices": [[0, 0, 0], [2, 0, 0], [2, 0, 2], [0, 0, 2], [0, 1, 0]],
-         "faces": [[0, 1, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]]}
+         "faces": [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]]}
 MOTIONS = {
     "x": ({"reflect": "x"}, lambda x, y, z: (14 - x, y, z)),
     "z": ({"reflect": "z"}, lambda x, y, z: (x, y, 14 - z)),
