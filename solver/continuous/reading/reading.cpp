@@ -102,8 +102,11 @@ void fill_mirrors_without_cuts(const Example& example, ReadingOptions& options) 
     }
     const auto reading = ExampleReading::make(std::move(whole), std::move(of_whole));
     for (SymmetryRule& rule : options.symmetries) {
-        if (rule.mirror || !reading ||
-            !have_images((*reading)->topes(), turns_of(std::span(&rule, 1)).front())) {
+        if (rule.mirror) {
+            continue;
+        }
+        rule.mirror.emplace();
+        if (!reading || !have_images((*reading)->topes(), turns_of(std::span(&rule, 1)).front())) {
             continue;
         }
         rule.mirror = likely_mirror(**reading, rule);
