@@ -278,10 +278,15 @@ std::string queued_fields(std::uint64_t position) {
     return dump(OrderedJson{{"position", position}});
 }
 
-std::string started_fields(std::uint32_t blocks_total, bool resumed) {
+std::string started_fields(
+    std::uint32_t blocks_total, bool resumed, const std::vector<std::string>& warnings
+) {
     OrderedJson fields = {{"blocks_total", blocks_total}};
     if (resumed) {
         fields["resumed"] = true;
+    }
+    if (!warnings.empty()) {
+        fields["warnings"] = warnings;
     }
     return dump(fields);
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace modelsynth::proto {
 
@@ -86,7 +87,11 @@ struct JobResult {
 // --- events: the fields besides seq, type and time, as the JSON text of an object
 
 [[nodiscard]] std::string queued_fields(std::uint64_t position);
-[[nodiscard]] std::string started_fields(std::uint32_t blocks_total, bool resumed);
+// `warnings`: what of the request cannot be had, as far as it is known by then; the field is absent
+// when there are none.
+[[nodiscard]] std::string started_fields(
+    std::uint32_t blocks_total, bool resumed, const std::vector<std::string>& warnings = {}
+);
 // `alternative`: of which of several models.
 [[nodiscard]] std::string block_fields(
     const BlockReport& report, const std::optional<std::uint32_t>& alternative = std::nullopt

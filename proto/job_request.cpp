@@ -399,14 +399,19 @@ class RequestReader {
         const Parameters given = solids_ ? Parameters(*solids_) : Parameters(parameters_);
         auto example = example_for(*example_, given);
         if (!example) {
-            faults_.add("/parameters/variants", example.error().message, true);
+            const bool is_turned = solids_ && solids_->variants != continuous::Variants();
+            faults_.add(
+                is_turned ? "/parameters/variants" : "/parameters/constraints",
+                example.error().message,
+                true
+            );
             return;
         }
         if (earlier_ && !are_read_alike(*example, earlier_->task.example)) {
             faults_.add(
                 "/parameters",
-                "variants, what has a dimension and so becomes other objects in them, and by how "
-                "much faces are nudged must be those of that job"
+                "variants, what has a dimension and so becomes other objects in them, symmetries "
+                "of shapes, and by how much faces are nudged must be those of that job"
             );
             return;
         }

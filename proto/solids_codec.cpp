@@ -9,11 +9,9 @@
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/faults.h"
 #include "solver/continuous/import/default_spacing.h"
-#include "solver/continuous/import/mesh_import.h"
 #include "solver/continuous/shapes/cut_boxes.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 namespace modelsynth::proto {
@@ -293,14 +291,19 @@ class SolidsReader {
 };
 
 // False when its models could not keep to them. They come first in those of its models.
-bool check_constraints(const ExampleReading& reading, const Value& value) {
-    const std::size_t count = reading.example().constraints.size();
+bool check_constraints(const std::shared_ptr<const ExampleReading>& plain, const Value& value) {
+    const std::size_t count = plain->example().constraints.size();
     if (count == 0) {
         return true;
     }
-    continuous::Parameters usual = continuous::fill_defaults({}, reading.example());
+    continuous::Parameters usual = continuous::fill_defaults({}, plain->example());
+    const auto reading = ExampleReading::read_for(plain, usual);
+    if (!reading) {
+        value.fault(reading.error().message, reading.error().code == ErrorCode::kTooLarge);
+        return false;
+    }
     usual.constraints->resize(count);
-    std::vector<Fault> faults = continuous::find_faults(reading, usual);
+    std::vector<Fault> faults = continuous::find_faults(**reading, usual);
     std::erase_if(faults, [](const Fault& fault) {
         return !fault.pointer.starts_with("/constraints/");
     });
@@ -346,7 +349,7 @@ std::shared_ptr<const ExampleReading> read_solids(const Value& value, const Requ
         value.faults().add_all(value.pointer(), reading.error().faults);
         return nullptr;
     }
-    if (!check_constraints(**reading, value)) {
+    if (!check_constraints(*reading, value)) {
         return nullptr;
     }
     return std::move(*reading);
@@ -444,26 +447,6 @@ OrderedJson solids_resource(const ExampleReading& reading, const std::string& id
     OrderedJson resource = solids_summary(reading, id, built_in);
     resource.update(write_solids(reading.example()));
     return resource;
-}
-
-Parsed<ExampleUpload> parse_example_glb(std::string_view bytes, const RequestLimits& limits) {
-    const auto refusal = [](const Error& error) {
-        Problem problem = problem_of(error);
-        if (error.code == ErrorCode::kInvalidArgument) {
-            problem.detail = "the example cannot be used: " + problem.detail;
-        }
-        return tl::unexpected(std::move(problem));
-    };
-    auto example = continuous::read_example_glb(std::as_bytes(std::span(bytes)));
-    if (!example) {
-        return refusal(example.error());
-    }
-    if (example->name.empty()) {
-        example->name = "solids";
-    }
-    // Kept as what it says, so that it can be shown and sent again like any other.
-    const std::string text = dump(Json::parse(dump(write_solids(*example))));
-    return parse_example(text, limits);
 }
 
 }  // namespace modelsynth::proto

@@ -34,6 +34,17 @@ std::string embedded(const Json& object, const char* name) {
     return value.is_object() ? dump(value) : "";
 }
 
+std::vector<std::string> texts_field(const Json& object, const char* name) {
+    std::vector<std::string> texts;
+    const Json& list = field(object, name);
+    for (const Json& text : list.is_array() ? list : Json::array()) {
+        if (text.is_string()) {
+            texts.push_back(text);
+        }
+    }
+    return texts;
+}
+
 // How many models a result tells of; 0: there is none.
 std::uint32_t model_count(const Json& result) {
     const Json& alternatives = field(result, "alternatives");
@@ -57,6 +68,8 @@ std::optional<JobEvent> parse_job_event(std::string_view text) {
     const Json& progress = event.type == "snapshot" ? job_progress : json;
     event.blocks_done = count_field(progress, "blocks_done");
     event.blocks_total = count_field(progress, "blocks_total");
+    event.warnings =
+        event.type == "started" ? texts_field(json, "warnings") : std::vector<std::string>();
     event.is_accepted = text_field(json, "outcome") == "accepted";
     event.position = count_field(json, "position");
     const Json& stats = field(field(json, "result"), "stats");

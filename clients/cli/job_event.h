@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace modelsynth::cli {
 
@@ -11,11 +12,12 @@ namespace modelsynth::cli {
 struct JobEvent {
     std::uint64_t seq = 0;
     std::string type;
-    std::uint64_t blocks_done = 0;   // of block and snapshot
-    std::uint64_t blocks_total = 0;  // of started, block and snapshot
-    bool is_accepted = false;        // of block
-    std::uint64_t position = 0;      // of queued
-    std::uint64_t accepted = 0;      // of succeeded: blocks, as the result counts them
+    std::uint64_t blocks_done = 0;      // of block and snapshot
+    std::uint64_t blocks_total = 0;     // of started, block and snapshot
+    std::vector<std::string> warnings;  // of started
+    bool is_accepted = false;           // of block
+    std::uint64_t position = 0;         // of queued
+    std::uint64_t accepted = 0;         // of succeeded: blocks, as the result counts them
     std::uint64_t reverted = 0;
     std::uint32_t models = 0;  // of succeeded: alternatives, or the one model
     std::string error;         // of failed: the problem document

@@ -85,6 +85,7 @@ void ProgressDisplay::take(const JobEvent& event) {
     if (event.type == "queued") {
         note("queued, " + std::to_string(event.position) + " before it");
     } else if (event.type == "started") {
+        warn(event.warnings);
         start(event.blocks_total);
     } else if (event.type == "block") {
         add_block(event.blocks_done, event.blocks_total, event.is_accepted);
@@ -98,6 +99,17 @@ void ProgressDisplay::take(const JobEvent& event) {
         progress_.reverted = event.reverted;
         progress_.blocks_done = event.accepted + event.reverted;
         progress_.blocks_total = progress_.blocks_done;
+    }
+}
+
+void ProgressDisplay::warn(std::span<const std::string> warnings) {
+    if (style_ == ProgressStyle::kNone || has_warned_) {
+        return;
+    }
+    for (const std::string& warning : warnings) {
+        note("warning: " + warning);
+        finish_line();
+        has_warned_ = true;
     }
 }
 
@@ -121,13 +133,19 @@ void ProgressDisplay::add_block(
 void ProgressDisplay::finish() {
     if (is_drawn_) {
         show(true);
-        std::fputc('\n', stderr);
-        is_drawn_ = false;
+        finish_line();
     }
 }
 
 std::chrono::seconds ProgressDisplay::elapsed() const {
     return std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - began_);
+}
+
+void ProgressDisplay::finish_line() {
+    if (is_drawn_) {
+        std::fputc('\n', stderr);
+        is_drawn_ = false;
+    }
 }
 
 void ProgressDisplay::note(const std::string& text) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace modelsynth::cli {
@@ -48,6 +49,8 @@ class ProgressDisplay {
     ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
     void take(const JobEvent& event);
+    // Those that were told before, as by a job that begins anew, are not shown again.
+    void warn(std::span<const std::string> warnings);
     void start(std::uint64_t blocks_total);
     void add_block(std::uint64_t blocks_done, std::uint64_t blocks_total, bool is_accepted);
     // Ends the bar, so that something else may be written.
@@ -60,6 +63,7 @@ class ProgressDisplay {
   private:
     void note(const std::string& text);
     void show(bool is_due);
+    void finish_line();
 
     using Clock = std::chrono::steady_clock;
 
@@ -69,6 +73,7 @@ class ProgressDisplay {
     Clock::time_point drawn_;
     std::uint64_t tenths_shown_ = 0;
     bool is_drawn_ = false;
+    bool has_warned_ = false;
 };
 
 }  // namespace modelsynth::cli

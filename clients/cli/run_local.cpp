@@ -57,6 +57,8 @@ class ShowProgress final : public Observer {
   public:
     explicit ShowProgress(ProgressDisplay& display) : display_(display) {}
 
+    void on_warnings(std::span<const std::string> warnings) override { display_.warn(warnings); }
+
     void on_start(std::uint32_t blocks_total, std::span<const Label> /*model*/) override {
         display_.start(blocks_total);
     }

@@ -37,7 +37,7 @@ Response submit_job(const Call& call) {
     if (seconds && !as_events) {
         response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(*seconds));
         response.wait = WaitForJob{
-            submitted->job.id, std::chrono::seconds(*seconds), 200, 202, cancel_when_left};
+            submitted->job.id, std::chrono::seconds(*seconds), 200, 202, {}, cancel_when_left};
     }
     return response;
 }

@@ -102,6 +102,10 @@ LoggingObserver::LoggingObserver(
     }
 }
 
+void LoggingObserver::on_warnings(std::span<const std::string> warnings) {
+    warnings_.assign(warnings.begin(), warnings.end());
+}
+
 void LoggingObserver::on_start(std::uint32_t blocks_total, std::span<const Label> model) {
     blocks_total_ = place_.blocks_before + place_.models_left * blocks_total;
     auto labels = std::make_shared<const std::vector<Label>>(model.begin(), model.end());
@@ -122,7 +126,8 @@ void LoggingObserver::start_claim(std::shared_ptr<const std::vector<Label>> labe
     const bool nothing_to_replay = earlier_.blocks.empty();
     const bool resumed = !claim_.solver_version.empty();
     std::vector<NewEvent> events;
-    events.push_back({"started", proto::started_fields(blocks_total_, resumed), proto::now_millis()}
+    events.push_back(
+        {"started", proto::started_fields(blocks_total_, resumed, warnings_), proto::now_millis()}
     );
     append(
         std::move(events),

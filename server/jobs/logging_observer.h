@@ -22,7 +22,7 @@ namespace modelsynth::server {
 
 // Part of what a job's log and model depend on; a change of the solver or of a built-in example
 // that changes models must change it.
-inline constexpr const char* kSolverVersion = "models-6";
+inline constexpr const char* kSolverVersion = "models-7";
 
 // What the store knows of a job that was begun before: the candidates that ended, when it makes
 // several models; of the one in hand where its solving goes on from, and the blocks that were
@@ -75,6 +75,7 @@ class LoggingObserver final : public Observer {
         const ModelInSeries& place
     );
 
+    void on_warnings(std::span<const std::string> warnings) override;
     void on_start(std::uint32_t blocks_total, std::span<const Label> model) override;
     void on_block(const BlockReport& report) override;
 
@@ -132,6 +133,7 @@ class LoggingObserver final : public Observer {
     const EarlierProgress& earlier_;
     std::shared_ptr<Start> start_ = std::make_shared<Start>();
     const ModelInSeries place_;
+    std::vector<std::string> warnings_;
     std::uint32_t blocks_total_ = 0;  // of the job
     std::uint32_t blocks_done_ = 0;
     bool diverged_ = false;

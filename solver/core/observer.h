@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace modelsynth {
@@ -35,6 +36,10 @@ struct Checkpoint {
 class Observer {
   public:
     virtual ~Observer() = default;
+
+    // What of the request cannot be had, one sentence each, as far as that is known before anything
+    // is made. Once, before on_start(); not at all where there is nothing to say.
+    virtual void on_warnings(std::span<const std::string> /*warnings*/) {}
 
     // Once, before the first block: the initial model stands, or that of the checkpoint.
     virtual void on_start(std::uint32_t blocks_total, std::span<const Label> model) = 0;

@@ -21,7 +21,8 @@ struct SynthesisStats {
     std::vector<std::optional<double>> candidates = {};
     // Of the surface, where the model is made of polygons.
     std::optional<std::size_t> polygons = std::nullopt;
-    // What of the request could not be had, one sentence each.
+    // What of the request could not be had, one sentence each; those that the observer was told
+    // come first.
     std::vector<std::string> warnings = {};
 };
 

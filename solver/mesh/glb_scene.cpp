@@ -4,6 +4,8 @@
 #include "solver/mesh/gltf_meshes.h"
 #include "solver/mesh/gltf_transform.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <optional>
 
@@ -12,31 +14,37 @@ namespace modelsynth {
 namespace {
 
 // Nests no deeper than the document, which was checked.
-Extra extra_of(const tinygltf::Value& source) {
-    if (source.IsBool()) {
-        return {source.Get<bool>()};
+Extra extra_of(const nlohmann::json& source) {
+    if (source.is_boolean()) {
+        return {source.get<bool>()};
     }
-    if (source.IsNumber()) {
-        return {source.GetNumberAsDouble()};
+    if (source.is_number()) {
+        return {source.get<double>()};
     }
-    if (source.IsString()) {
-        return {source.Get<std::string>()};
+    if (source.is_string()) {
+        return {source.get<std::string>()};
     }
-    if (source.IsArray()) {
+    if (source.is_array()) {
         Extra::List items;
-        for (const tinygltf::Value& item : source.Get<tinygltf::Value::Array>()) {
+        for (const nlohmann::json& item : source) {
             items.push_back(extra_of(item));
         }
         return {std::move(items)};
     }
-    if (source.IsObject()) {
+    if (source.is_object()) {
         Extra::Members members;
-        for (const auto& [name, member] : source.Get<tinygltf::Value::Object>()) {
+        for (const auto& [name, member] : source.items()) {
             members.emplace_back(name, extra_of(member));
         }
         return {std::move(members)};
     }
     return {};
+}
+
+// Of the text, since tinygltf makes 32 bits of integers and nothing of what is empty.
+template <class Element>
+Extra extras_of(const Element& element) {
+    return extra_of(nlohmann::json::parse(element.extras_json_string, nullptr, false));
 }
 
 class SceneReader {
@@ -57,8 +65,12 @@ class SceneReader {
                 return tl::unexpected(std::move(fine.error()));
             }
         }
-        scene_.asset_extras = extra_of(model_.asset.extras);
+        scene_.asset_extras = extras_of(model_.asset);
         scene_.kit.materials = meshes_.take_materials();
+        for (const tinygltf::Material& material : model_.materials) {
+            scene_.material_extras.push_back(extras_of(material));
+        }
+        scene_.material_extras.resize(scene_.kit.materials.size());
         return std::move(scene_);
     }
 
@@ -72,7 +84,7 @@ class SceneReader {
             const auto chosen = static_cast<std::size_t>(std::max(model_.defaultScene, 0));
             scene_.number = chosen < model_.scenes.size() ? chosen : 0;
             const tinygltf::Scene& scene = model_.scenes[scene_.number];
-            scene_.extras = extra_of(scene.extras);
+            scene_.extras = extras_of(scene);
             return scene.nodes;
         }
         std::vector<bool> is_child(model_.nodes.size());
@@ -131,7 +143,7 @@ class SceneReader {
         if (!mesh) {
             return tl::unexpected(std::move(mesh.error()));
         }
-        scene_.nodes.push_back({number, node.name, *mesh, frame.columns, extra_of(node.extras)});
+        scene_.nodes.push_back({number, node.name, *mesh, frame.columns, extras_of(node)});
         return {};
     }
 

@@ -25,6 +25,8 @@ struct Extra {
 
     // The member of that name; null when there is none, or when this is no object.
     [[nodiscard]] const Extra* find(std::string_view name) const;
+
+    friend bool operator==(const Extra&, const Extra&) = default;
 };
 
 // A node that has a mesh.
@@ -39,7 +41,8 @@ struct GlbNode {
 
 // A scene as it stands, other than the kit that read_glb() makes of it.
 struct GlbScene {
-    Kit kit;  // meshes as they are in the file, in their own frames
+    Kit kit;                             // meshes as they are in the file, in their own frames
+    std::vector<Extra> material_extras;  // by material of the kit
     std::vector<GlbNode> nodes;
     std::size_t number = 0;  // in the file's list of scenes
     Extra extras;            // of the scene

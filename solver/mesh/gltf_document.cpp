@@ -78,6 +78,7 @@ Result<void> check_container(std::span<const std::byte> bytes, const GlbReadLimi
 
 Result<tinygltf::Model> parse_document(std::span<const std::byte> bytes) {
     tinygltf::TinyGLTF loader;
+    loader.SetStoreOriginalJSONForExtrasAndExtensions(true);
     tinygltf::FsCallbacks no_files = {};
     no_files.FileExists = [](const std::string&, void*) { return false; };
     no_files.ExpandFilePath = [](const std::string&, void*) { return std::string(); };

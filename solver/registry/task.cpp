@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace modelsynth {
 
@@ -249,6 +250,10 @@ Result<Finished> run_continuous(
     if (!problem) {
         return tl::unexpected(problem.error());
     }
+    std::vector<std::string> warnings = continuous::warnings_of(**problem);
+    if (!warnings.empty()) {
+        observer.on_warnings(warnings);
+    }
     auto made =
         continuous::synthesise(**problem, parameters, task.seed, observer, stop, from, threads);
     if (!made) {
@@ -256,7 +261,7 @@ Result<Finished> run_continuous(
     }
     const continuous::Surface surface = continuous::make_surface(**problem, made->labels);
     made->stats.polygons = surface.polygons.size();
-    made->stats.warnings = continuous::warnings_of(**problem);
+    made->stats.warnings = std::move(warnings);
     if (!surface.is_closed) {
         made->stats.warnings.emplace_back(
             "the model is open where a free side cuts it: faces are left out there"

@@ -22,11 +22,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace modelsynth {
@@ -309,6 +312,121 @@ TEST(Fuzz, SolidsInBinaryGltf) {
         EXPECT_TRUE(parsed || !proto::to_json(parsed.error()).empty());
         return parsed.has_value();
     });
+}
+
+// A file as the writer makes it, with these members added to each of its elements of a kind.
+std::string with_extras(
+    std::string glb, const std::vector<std::pair<std::string, std::string>>& added
+) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, glb.data() + 12, sizeof size);
+    std::string json = glb.substr(20, size);
+    for (const auto& [before, members] : added) {
+        const std::size_t at = json.find(before);
+        EXPECT_NE(at, std::string::npos) << before << " in " << json;
+        if (at == std::string::npos) {
+            continue;
+        }
+        json.insert(at + before.size(), members);
+    }
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    glb.replace(20, size, json);
+    const auto put = [&glb](std::size_t at, std::size_t value) {
+        const auto word = static_cast<std::uint32_t>(value);
+        std::memcpy(glb.data() + at, &word, sizeof word);
+    };
+    put(12, json.size());
+    put(8, glb.size());
+    return glb;
+}
+
+// A box, and what is a shape, a moulding and a knob by its extras.
+std::string box_with_attachments() {
+    const auto mesh = [](const char* name, const std::vector<Vec3>& corners) {
+        Primitive primitive;
+        for (const Vec3& corner : corners) {
+            primitive.indices.push_back(static_cast<std::uint32_t>(primitive.positions.size()));
+            primitive.positions.push_back(corner);
+        }
+        primitive.normals.resize(corners.size(), {0, 1, 0});
+        primitive.colors.resize(corners.size(), {255, 255, 255});
+        return Mesh{name, {primitive}};
+    };
+    const Vec3 o = {0, 0, 0};
+    const Vec3 x = {1, 0, 0};
+    const Vec3 y = {0, 1, 0};
+    const Vec3 z = {0, 0, 1};
+    const std::array<Vec3, 8> c = {{o, x, {1, 1, 0}, y, z, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+    std::vector<Vec3> cube;
+    for (const auto& [i, j, k, l] : std::vector<std::array<std::size_t, 4>>{
+             {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}) {
+        cube.insert(cube.end(), {c[i], c[j], c[k], c[i], c[k], c[l]});
+    }
+    auto kit = std::make_shared<Kit>();
+    kit->materials = {{"wall", {}}};
+    kit->meshes = {
+        mesh("cube", cube),
+        mesh("gem", {o, y, x, o, z, y, o, x, z, x, y, z}),
+        mesh("flat", {o, x, y})};
+    Scene scene;
+    scene.kit = kit;
+    scene.names = {"house", "shape", "moulding", "knob"};
+    for (std::uint32_t node = 0; node < 4; ++node) {
+        const std::uint32_t of_mesh = node == 3 ? 1 : node;
+        scene.groups.push_back({"", {{of_mesh, node, {0, 0, 0}, 0}}});
+    }
+    return with_extras(
+        *write_glb(scene),
+        {{R"("scenes":[{)",
+          R"("extras":{"spacing":1,"size":[6,4,6],"density":0.4,"name":"walls","connected":)"
+          R"("[[\"wall\"]]","dimensions":[{"object":"wall","normal":[0,0,1]}],"bounds":)"
+          R"({"min":[-9,-9,-9],"max":[9,9,9]},"constraints":[{"kind":"forbidden","objects":)"
+          R"(["wall"],"box":{"min":[0,0,0],"max":[1,1,1]}}]},)"},
+         {R"("materials":[{)",
+          R"("extras":{"weight":2,"decorations":"[{\"edges\":[\"up\",\"side\"],\"profile\":)"
+          R"([[0,0],[0.1,0],[0.1,0.1]]}]"},)"},
+         {R"("piece":"shape")", R"(,"shape":"wall","even":"x z","smooth":30)"},
+         {R"("piece":"moulding")", R"(,"decorates":"wall","edges":"up side","turn":"convex")"},
+         {R"("piece":"knob")",
+          R"(,"decorates":"wall","corners":"any up any","turned":1,"smooth":0)"}}
+    );
+}
+
+// What the extras of a GLB say is refused with its place, or can be told as JSON again. It is the
+// JSON that is changed.
+TEST(Fuzz, ExtrasOfBinaryGltf) {
+    const std::string glb = box_with_attachments();
+    const auto whole = proto::parse_example_glb(glb, {});
+    ASSERT_TRUE(whole) << proto::to_json(whole.error());
+    std::uint32_t size = 0;
+    std::memcpy(&size, glb.data() + 12, sizeof size);
+    std::size_t at_places = 0;
+    for (std::uint64_t round = 0; round < rounds(); ++round) {
+        RandomStream random({round, 0, 0, 17});
+        std::string json = glb.substr(20, size);
+        json = mutate(std::move(json), random);
+        std::string changed =
+            glb.substr(0, 20) + json + std::string((4 - json.size() % 4) % 4, ' ');
+        const auto json_size = static_cast<std::uint32_t>(changed.size() - 20);
+        changed += glb.substr(20 + size);
+        const auto whole_size = static_cast<std::uint32_t>(changed.size());
+        std::memcpy(changed.data() + 12, &json_size, sizeof json_size);
+        std::memcpy(changed.data() + 8, &whole_size, sizeof whole_size);
+        const auto parsed = proto::parse_example_glb(changed, {});
+        if (parsed) {
+            EXPECT_TRUE(proto::parse_example(parsed->canonical, {})) << parsed->canonical;
+            continue;
+        }
+        for (const Fault& fault : parsed.error().errors) {
+            const bool is_in_file = fault.pointer.empty() || fault.pointer.starts_with("/nodes/") ||
+                                    fault.pointer.starts_with("/materials/") ||
+                                    fault.pointer.starts_with("/scenes/") ||
+                                    fault.pointer.starts_with("/asset/");
+            EXPECT_TRUE(is_in_file) << fault.pointer << ": " << fault.detail;
+            at_places += fault.pointer.find("/extras/") != std::string::npos ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(at_places, 0U);
 }
 
 // A small file that passes for a PNG.

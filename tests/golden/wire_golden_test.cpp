@@ -94,7 +94,7 @@ TEST(Golden, Events) {
     text += event_json(1, "queued", time, queued_fields(3)) + "\n";
     text += event_json(2, "started", time + 1, started_fields(8, false)) + "\n";
     text += event_json(3, "block", time + 2, block_fields(accepted)) + "\n";
-    text += event_json(4, "started", time + 3, started_fields(8, true)) + "\n";
+    text += event_json(4, "started", time + 3, started_fields(8, true, {"one", "two"})) + "\n";
     text += event_json(5, "block", time + 4, block_fields(reverted)) + "\n";
     text += event_json(6, "succeeded", time + 5, succeeded_fields(R"({"bytes":1})")) + "\n";
     text += event_json(6, "failed", time + 6, failed_fields(to_json(problem))) + "\n";

@@ -63,6 +63,9 @@ def test_includes_point_the_right_way(path):
 def test_layers_know_no_libraries_of_others(path):
     if path == "solver/examples/make_examples.cpp":
         return
+    if path == "solver/mesh/glb_scene.cpp":  # glTF is JSON, and tinygltf loses some of it
+        assert [name for name in includes(path) if "json" in name] == ["nlohmann/json.hpp"]
+        return
     forbidden = rule(FORBIDDEN, path) or []
     wrong = [name for name in includes(path)
              if any(name == word or (word.endswith("/") and name.startswith(word))

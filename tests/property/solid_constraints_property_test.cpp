@@ -14,6 +14,7 @@
 #include "tests/support/solid_places.h"
 #include "tests/support/surface_checker.h"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include <cstdlib>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -232,6 +234,81 @@ std::vector<ObjectId> objects_of(const Constraint& constraint, const Example& ex
     return objects;
 }
 
+// What a symmetry turns a model by; nothing for those that only move it.
+std::optional<Eigen::Matrix3d> turn_of(const SymmetryRule& rule) {
+    constexpr std::array<std::array<double, 4>, 4> kTurns = {
+        {{-1, 0, 0, 1}, {1, 0, 0, -1}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
+    const auto kind = static_cast<std::size_t>(rule.kind);
+    if (kind >= kTurns.size()) {
+        return std::nullopt;
+    }
+    const auto& [xx, xz, zx, zz] = kTurns.at(kind);
+    Eigen::Matrix3d turn;
+    turn << xx, 0, xz, 0, 1, 0, zx, 0, zz;
+    return turn;
+}
+
+std::vector<ObjectId> images_of_objects(const ExampleReading& reading, const SymmetryRule& rule) {
+    const Example& example = reading.example();
+    std::vector<ObjectId> images(example.objects.size() + 1);
+    std::iota(images.begin(), images.end(), ObjectId{0});
+    for (const auto& [object, image] : rule.mirror ? *rule.mirror : likely_mirror(reading, rule)) {
+        images[find_object(example, object)] = find_object(example, image);
+        ObjectId& back = images[find_object(example, image)];
+        back = back == find_object(example, image) ? find_object(example, object) : back;
+    }
+    // Shapes become what they are once they are turned, and so does what was cut off them.
+    const auto turn = turn_of(rule);
+    for (std::size_t a = 0; turn && a < example.objects.size(); ++a) {
+        const ObjectType& from = example.objects[a];
+        for (std::size_t b = 0; b < example.objects.size(); ++b) {
+            const ObjectType& to = example.objects[b];
+            const auto base = [](const ObjectType& type, std::size_t object) {
+                return type.variant_of == kEmpty ? object + 1 : std::size_t{type.variant_of};
+            };
+            if ((from.shape != nullptr || from.rest_of != kEmpty) && base(from, a) == base(to, b) &&
+                *turn * from.turn == to.turn) {
+                images[a + 1] = static_cast<ObjectId>(b + 1);
+            }
+        }
+    }
+    return images;
+}
+
+// The example as it is read where shapes have images: with what the symmetries make of it beside.
+Example with_images(const ExampleReading& reading) {
+    Example example = reading.example();
+    std::vector<std::vector<Polyhedron>> copies = {example.polyhedra};
+    constexpr std::size_t kCopiesMax = 8;
+    for (std::size_t i = 0; i < copies.size() && copies.size() < kCopiesMax; ++i) {
+        for (const SymmetryRule& rule : reading.options().symmetries) {
+            const std::vector<ObjectId> images = images_of_objects(reading, rule);
+            const Eigen::Matrix3d turn = *turn_of(rule);
+            std::vector<Polyhedron>& copy = copies.emplace_back(copies[i]);
+            for (Polyhedron& solid : copy) {
+                solid.object = images[solid.object];
+                for (Point& corner : solid.corners) {
+                    corner = turn * corner;
+                }
+                for (Face& face : solid.faces) {
+                    if (turn.determinant() < 0) {
+                        std::reverse(face.begin(), face.end());
+                    }
+                }
+            }
+        }
+    }
+    for (std::size_t i = 1; i < copies.size(); ++i) {
+        for (Polyhedron& solid : copies[i]) {
+            for (Point& corner : solid.corners) {
+                corner.x() += 100 * static_cast<double>(i);
+            }
+            example.polyhedra.push_back(std::move(solid));
+        }
+    }
+    return example;
+}
+
 // Looks at a model by its polygons.
 class ModelLooker {
   public:
@@ -278,14 +355,7 @@ class ModelLooker {
 
     // What stands at a place's image is the image of what stands there.
     void expect_symmetry(const SymmetryRule& rule, Chance& chance) const {
-        std::vector<ObjectId> images(example_.objects.size() + 1);
-        std::iota(images.begin(), images.end(), ObjectId{0});
-        for (const auto& [object, image] :
-             rule.mirror ? *rule.mirror : likely_mirror(*problem_.reading, rule)) {
-            images[find_object(example_, object)] = find_object(example_, image);
-            ObjectId& back = images[find_object(example_, image)];
-            back = back == find_object(example_, image) ? find_object(example_, object) : back;
-        }
+        const std::vector<ObjectId> images = images_of_objects(*problem_.reading, rule);
         const Eigen::AlignedBox3d box = places_.set().frame().clip;
         const Point middle(box.center().x(), 0, box.center().z());
         for (int i = 0; i < 200; ++i) {
@@ -436,7 +506,7 @@ void expect_the_rest_kept(
     const Surface surface = make_surface(*problem, made->labels);
     const ModelLooker after(*problem, parameters, surface);
     const Eigen::AlignedBox3d& clip = after.places().set().frame().clip;
-    EXPECT_EQ(text(SurfaceChecker(reading->example()).find_faults(surface, clip)), "");
+    EXPECT_EQ(text(SurfaceChecker(with_images(*reading)).find_faults(surface, clip)), "");
     for (int i = 0; i < 300; ++i) {
         const Point share(chance.share(), chance.share(), chance.share());
         const Point place = clip.min() + share.cwiseProduct(clip.sizes());
@@ -461,12 +531,15 @@ void expect_the_rest_kept(
 // What came of one random request.
 enum class Ending : std::uint8_t { kModel, kContradiction, kGaveUp, kNoModel };
 
-Ending expect_constraints_hold(const Reading& reading, std::uint64_t seed, int extent_max) {
-    RequestMaker maker(*reading, seed + 1000, extent_max);
+Ending expect_constraints_hold(const Reading& plain, std::uint64_t seed, int extent_max) {
+    RequestMaker maker(*plain, seed + 1000, extent_max);
     Parameters parameters = maker.make();
-    while (!find_faults(*reading, parameters).empty()) {  // symmetries that cannot be
+    auto read = ExampleReading::read_for(plain, parameters);
+    while (!read || !find_faults(**read, parameters).empty()) {  // symmetries that cannot be
         parameters = maker.make();
+        read = ExampleReading::read_for(plain, parameters);
     }
+    const Reading& reading = *read;
     const auto problem = make_problem(reading, parameters);
     if (!problem) {
         const ErrorCode code = problem.error().code;
@@ -489,7 +562,7 @@ Ending expect_constraints_hold(const Reading& reading, std::uint64_t seed, int e
     const Surface surface = make_surface(*problem, made->labels);
     const ModelLooker looker(*problem, parameters, surface);
     EXPECT_EQ(
-        text(SurfaceChecker(reading->example())
+        text(SurfaceChecker(with_images(*reading))
                  .find_faults(surface, looker.places().set().frame().clip)),
         ""
     );

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from checks import assert_problem
+from event_reader import EventReader
 from test_continuous import HUT, make, model_of, triangles_by_material
 
 SIZE = [9.0, 4.0, 9.0]
@@ -113,6 +114,10 @@ def test_figures_without_a_place_are_named(make_server):
     assert 1 < len(warnings) <= 20
     assert any("1 of 26 figures has no place" in text and "h2, h3, h4, h5 and h6" in text
                for text in warnings), warnings
+    with EventReader(server.port, job["id"]) as reader:
+        started, = [event for event in reader.rest() if event["type"] == "started"]
+    # What came of it is known at the end alone.
+    assert [*started["warnings"], "nothing fits but what the model began as"] == warnings
     # They are kept with the result.
     server.kill()
     server.start()
@@ -120,8 +125,31 @@ def test_figures_without_a_place_are_named(make_server):
     assert kept["result"]["stats"]["warnings"] == warnings
 
 
+def test_what_cannot_be_had_is_told_before_anything_is_made(make_server):
+    """And again by a job that a restart begins anew."""
+    server = make_server()
+    example, normals = pentagon()
+    request = {"solver": "continuous", "example": example, "seed": 1,
+               "parameters": {"size": [30, 4, 30], "blocks": {
+                   "size": [8, 4, 8], "overlap": 0.75, "passes": 100}}}
+    job = server.request("POST", "/v1/jobs", request).json()
+    with EventReader(server.port, job["id"]) as reader:
+        first = reader.until_event(lambda event: event["type"] == "started")[-1]
+        assert any("1 of 26 figures has no place" in text for text in first["warnings"])
+        server.kill()
+        seen = len(reader.rest_before_crash()) + 2
+    server.start()
+    with EventReader(server.port, job["id"], f"?after={seen}") as reader:
+        again = reader.until_event(lambda event: event["type"] == "started")[-1]
+    assert again["resumed"] is True and again["warnings"] == first["warnings"]
+    server.request("POST", f"/v1/jobs/{job['id']}/cancel")
+
+
 def test_nothing_is_said_where_all_have_a_place(server):
-    assert "warnings" not in make(server)["result"]["stats"]
+    plain = make(server)
+    assert "warnings" not in plain["result"]["stats"]
+    with EventReader(server.port, plain["id"]) as reader:
+        assert not any("warnings" in event for event in reader.rest())
     example, normals = pentagon()
     apex = [4.1, 1.3, 3.9]
     offsets = [{"normal": n, "offsets": [sum(a * b for a, b in zip(n, apex)) / math.hypot(*n)]}

@@ -100,6 +100,59 @@ def test_constraints_name_it_as_one_object(server):
     assert triangles and min(x for one in triangles for x, _, _ in one) >= 7
 
 
+# A wedge that is high in the north-west: not like any image of it.
+WEDGE = {"vertices": [[0, 0, 0], [2, 0, 0], [2, 0, 2], [0, 0, 2], [0, 1, 0]],
+         "faces": [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]]}
+MOTIONS = {
+    "x": ({"reflect": "x"}, lambda x, y, z: (14 - x, y, z)),
+    "z": ({"reflect": "z"}, lambda x, y, z: (x, y, 14 - z)),
+    "half turn": ({"rotate": 2}, lambda x, y, z: (14 - x, y, 14 - z)),
+    "quarter turn": ({"rotate": 4}, lambda x, y, z: (z, y, 14 - x)),
+}
+
+
+def corners_of(triangles):
+    return collections.Counter(
+        frozenset(tuple(round(part, 3) for part in corner) for corner in one)
+        for one in triangles)
+
+
+@pytest.mark.parametrize("motion", MOTIONS)
+@pytest.mark.parametrize("shape", [
+    {**SHAPE, "even": ["x", "y", "z"]}, {**SHAPE, "even": ["x", "z"]}, WEDGE,
+    {**WEDGE, "even": ["y", "z"]}], ids=["gem", "column", "wedge", "cut wedge"])
+def test_shapes_are_turned_and_mirrored_as_models_are(server, shape, motion):
+    rule, move = MOTIONS[motion]
+    example = {**GEMS, "objects": [GEMS["objects"][0], {"name": "gem", "shape": shape}]}
+    parameters = {"size": [14, 4, 14], "constraints": [{"kind": "symmetry", **rule}]}
+    job = make(server, example, parameters=parameters)
+    triangles = triangles_by_material(model_of(server, job))["gem"]
+    found = corners_of(triangles)
+    assert found and found == corners_of([[move(*corner) for corner in one] for one in triangles])
+    # All of them are shapes: none is left as its box.
+    assert len(triangles) % sum(len(face) - 2 for face in shape["faces"]) == 0
+    echo = job["request"]["parameters"]
+    again = make(server, example, parameters=echo)
+    assert again["request"]["parameters"] == echo
+    assert again["result"]["sha256"] == job["result"]["sha256"]
+
+
+def test_shapes_follow_a_symmetry_of_the_example(server):
+    rule = {"kind": "symmetry", "reflect": "x"}
+    size = {"parameters": {"size": [14, 4, 14]}}
+    of_example = make(server, {**GEMS, "constraints": [rule]}, **size)
+    of_request = make(server, GEMS, parameters={"size": [14, 4, 14], "constraints": [rule]})
+    assert of_example["result"]["sha256"] == of_request["result"]["sha256"]
+
+
+def test_the_image_of_a_shape_is_no_other_object(server):
+    rule = {"kind": "symmetry", "reflect": "x", "mirror": {"gem": "post"}}
+    example = {**GEMS, "objects": [*GEMS["objects"], {"name": "post"}],
+               "polyhedra": [*GEMS["polyhedra"], box("post", (5, 0, 0), (6, 2, 1))]}
+    request, answer = post(server, example, parameters={"constraints": [rule]})
+    assert_faults(answer, request, ["/parameters/constraints/0/mirror"])
+
+
 @pytest.mark.parametrize("change, expected", [
     ({}, ["/vertices", "/faces"]),
     ({**SHAPE, "even": ["x"]}, ["/even"]),

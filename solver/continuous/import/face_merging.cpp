@@ -58,7 +58,7 @@ class Merging {
             }
         }
         std::sort(faces.begin(), faces.end(), [](const MergedFace& a, const MergedFace& b) {
-            return a.triangle < b.triangle;
+            return a.triangles.front() < b.triangles.front();
         });
         return faces;
     }
@@ -128,14 +128,14 @@ class Merging {
         return area_of(triangle).normalized().dot(normal) > kSameSideCosine;
     }
 
-    void add_faces(const std::vector<std::uint32_t>& region, std::vector<MergedFace>& faces) const {
-        const std::uint32_t first = *std::min_element(region.begin(), region.end());
+    void add_faces(std::vector<std::uint32_t> region, std::vector<MergedFace>& faces) const {
         if (auto border = region.size() > 1 ? border_of(region) : std::nullopt) {
-            faces.push_back({std::move(*border), first});
+            std::swap(region.front(), *std::min_element(region.begin(), region.end()));
+            faces.push_back({std::move(*border), std::move(region)});
             return;
         }
         for (const std::uint32_t triangle : region) {
-            faces.push_back({{3 * triangle, 3 * triangle + 1, 3 * triangle + 2}, triangle});
+            faces.push_back({{3 * triangle, 3 * triangle + 1, 3 * triangle + 2}, {triangle}});
         }
     }
 

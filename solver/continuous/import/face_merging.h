@@ -11,8 +11,8 @@ namespace modelsynth::continuous {
 
 // A face of a solid made of triangles.
 struct MergedFace {
-    std::vector<HalfEdge> border;  // each begins at a corner of the face
-    std::uint32_t triangle = 0;    // one of those that it is made of
+    std::vector<HalfEdge> border;          // each begins at a corner of the face
+    std::vector<std::uint32_t> triangles;  // those that it is made of, the first one first
 };
 
 // Triangles side by side that lie in one plane as polygons. Where these would have a hole, would

@@ -1,5 +1,7 @@
 #include "solver/continuous/import/half_edges.h"
 
+#include "solver/core/disjoint_sets.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -104,6 +106,18 @@ std::vector<HalfEdge> find_mates(
         }
     }
     return mates;
+}
+
+std::vector<std::uint32_t> corners_of(std::span<const HalfEdge> mates) {
+    DisjointSets corners(mates.size());
+    for (HalfEdge half = 0; half < mates.size(); ++half) {
+        corners.join(half, next_in_triangle(mates[half]));
+    }
+    std::vector<std::uint32_t> numbers(mates.size());
+    for (HalfEdge half = 0; half < mates.size(); ++half) {
+        numbers[half] = corners.find(half);
+    }
+    return numbers;
 }
 
 }  // namespace modelsynth::continuous

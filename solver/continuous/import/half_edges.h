@@ -27,4 +27,8 @@ inline constexpr HalfEdge kNoHalfEdge = 0xFFFFFFFF;
     std::span<const Point> points, std::span<const Triangle> triangles
 );
 
+// The number of the corner at which each half-edge begins: triangles have one in common only where
+// they are around it side by side. Requires: `mates` as above, nowhere open.
+[[nodiscard]] std::vector<std::uint32_t> corners_of(std::span<const HalfEdge> mates);
+
 }  // namespace modelsynth::continuous

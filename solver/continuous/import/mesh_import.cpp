@@ -1,9 +1,12 @@
 #include "solver/continuous/import/mesh_import.h"
 
 #include "solver/continuous/check/solid_check.h"
+#include "solver/continuous/import/attachments.h"
 #include "solver/continuous/import/default_spacing.h"
 #include "solver/continuous/import/import_objects.h"
-#include "solver/continuous/import/import_settings.h"
+#include "solver/continuous/import/import_tolerances.h"
+#include "solver/continuous/import/node_places.h"
+#include "solver/continuous/import/object_fields.h"
 #include "solver/continuous/import/triangle_solids.h"
 #include "solver/continuous/import/welding.h"
 #include "solver/mesh/glb_scene.h"
@@ -11,9 +14,12 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,10 +31,20 @@ namespace modelsynth::continuous {
 
 namespace {
 
-// Shares of the extent.
-constexpr double kWeldTolerance = 1e-6;
-constexpr double kMergeTolerance = 4e-7;  // twice this is flat enough for find_families()
-constexpr double kGroundTolerance = 1e-4;
+constexpr double kGroundTolerance = 1e-4;  // of the extent
+
+// What the extras of a scene or an asset may tell, by the names that fields have in JSON examples.
+constexpr std::array<std::string_view, 10> kExampleFields = {
+    "name",
+    "title",
+    "description",
+    "spacing",
+    "size",
+    "density",
+    "bounds",
+    "dimensions",
+    "connected",
+    "constraints"};
 
 // Triangles of one object in one node.
 struct Soup {
@@ -38,23 +54,31 @@ struct Soup {
     std::vector<std::uint32_t> numbers;  // of the triangles in their node
 };
 
-struct Source {
+struct SolidOrigin {
     std::size_t node = 0;
     std::vector<std::uint32_t> triangles;  // in the node, by face
 };
 
 class Importer {
   public:
-    explicit Importer(const GlbScene& scene) : scene_(scene) {}
+    explicit Importer(const std::shared_ptr<const GlbScene>& scene)
+        : shared_(scene),
+          scene_(*scene),
+          refuse_source_([this](const Source& place, const std::string& why) {
+              refuse(place.in_file, place.who + why);
+          }),
+          attachments_(scene, refuse_source_),
+          fields_(refuse_source_) {}
 
-    Result<Example> run() {
+    Result<ImportedExample> run() {
         if (const std::size_t count = triangle_count(); count > kTrianglesMax) {
             return tl::unexpected(Error{
                 ErrorCode::kTooLarge,
                 "the scene has " + std::to_string(count) + " triangles, more than " +
                     std::to_string(kTrianglesMax)});
         }
-        read_settings();
+        read_said();
+        find_materials();
         for (std::size_t node = 0; node < scene_.nodes.size(); ++node) {
             read_node(node);
         }
@@ -64,9 +88,7 @@ class Importer {
         }
         example_.objects = objects_.types();
         example_.materials = objects_.materials();
-        if (faults_.empty()) {
-            apply_settings();
-        }
+        attachments_.give_to(made_);
         if (faults_.empty()) {
             check_solids();
         }
@@ -76,8 +98,9 @@ class Importer {
                 "the scene of the GLB is no example of solids",
                 std::move(faults_)});
         }
-        example_.spacing = settings_.spacing ? *settings_.spacing : default_spacing(example_);
-        return std::move(example_);
+        example_.spacing = default_spacing(example_);
+        add_said(fields_.fields());
+        return std::move(made_);
     }
 
   private:
@@ -88,20 +111,12 @@ class Importer {
     }
 
     void refuse_node(std::size_t node, const std::string& detail, bool over_limit = false) {
-        refuse(
-            "/nodes/" + std::to_string(scene_.nodes[node].number),
-            "node " + quoted(name_of(node)) + detail,
-            over_limit
-        );
+        const Source place = source_of(scene_, node);
+        refuse(place.in_file, place.who + detail, over_limit);
     }
 
     [[nodiscard]] const Mesh& mesh_of(std::size_t node) const {
         return scene_.kit.meshes[scene_.nodes[node].mesh];
-    }
-
-    [[nodiscard]] std::string_view name_of(std::size_t node) const {
-        const std::string& own = scene_.nodes[node].name;
-        return own.empty() ? mesh_of(node).name : own;
     }
 
     [[nodiscard]] std::size_t triangle_count() const {
@@ -119,40 +134,36 @@ class Importer {
         return count;
     }
 
-    void read_settings() {
-        read_import_settings(scene_.asset_extras, "/asset/extras", settings_, faults_);
-        read_import_settings(
-            scene_.extras,
-            "/scenes/" + std::to_string(scene_.number) + "/extras",
-            settings_,
-            faults_
-        );
+    [[nodiscard]] SharedExtra share(const Extra& extras) const { return {shared_, &extras}; }
+
+    void add_said(std::vector<SaidField> fields) {
+        for (SaidField& field : fields) {
+            made_.said.push_back(std::move(field));
+        }
     }
 
-    // The places of the corners of a node's triangles, three by three.
-    [[nodiscard]] std::vector<Point> places_of(std::size_t node) const {
-        Eigen::Matrix3d turn;
-        const auto& frame = scene_.nodes[node].frame;
-        for (Eigen::Index column = 0; column < 3; ++column) {
-            const auto& image = frame[static_cast<std::size_t>(column)];
-            turn.col(column) = Point(image[0], image[1], image[2]);
-        }
-        const Point origin(frame[3][0], frame[3][1], frame[3][2]);
-        // A mirrored mesh is inside out.
-        const bool is_mirrored = turn.determinant() < 0;
-        std::vector<Point> places;
-        for (const Primitive& primitive : mesh_of(node).primitives) {
-            for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
-                const std::size_t corner = is_mirrored ? i - i % 3 + (3 - i % 3) % 3 : i;
-                const Vec3& place = primitive.positions[primitive.indices[corner]];
-                places.emplace_back(turn * Point(place.x, place.y, place.z) + origin);
+    // Of the scene last, since what is said last counts.
+    void read_said() {
+        const std::string scene = "/scenes/" + std::to_string(scene_.number) + "/extras";
+        add_said(said_fields(
+            share(scene_.asset_extras), kExampleFields, {"", "/asset/extras", "the file"}
+        ));
+        add_said(said_fields(share(scene_.extras), kExampleFields, {"", scene, "the scene"}));
+    }
+
+    void find_materials() {
+        for (const GlbNode& node : scene_.nodes) {
+            if (node.extras.find("decorates") != nullptr || !shaped_object(node).empty()) {
+                continue;
+            }
+            for (const Primitive& primitive : scene_.kit.meshes[node.mesh].primitives) {
+                materials_.emplace(object_name(node, scene_.kit, primitive), primitive.material);
             }
         }
-        return places;
     }
 
     void read_node(std::size_t node) {
-        const std::vector<Point> places = places_of(node);
+        const std::vector<Point> places = places_of(scene_, node);
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (!(places[i].array().abs() <= kCoordinateMax).all()) {
                 refuse_node(
@@ -163,9 +174,25 @@ class Importer {
                 return;
             }
         }
-        if (!is_ground(node, places)) {
+        const GlbNode& source = scene_.nodes[node];
+        if (source.extras.find("decorates") != nullptr) {
+            read_decoration(node);
+        } else if (!shaped_object(source).empty()) {
+            attachments_.add_shape(node);
+        } else if (!is_ground(node, places)) {
             add_soups(node, places);
         }
+    }
+
+    // Looks like the object that it would be a solid of, or just like what it decorates.
+    void read_decoration(std::size_t node) {
+        const GlbNode& source = scene_.nodes[node];
+        const std::vector<Primitive>& primitives = mesh_of(node).primitives;
+        const auto own = materials_.find(decorated_object(source));
+        const bool looks_so = primitives.empty() ||
+                              (source.extras.find("object") == nullptr && own != materials_.end() &&
+                               own->second == primitives.front().material);
+        attachments_.add_decoration(node, looks_so ? kEmpty : object_of(node, primitives.front()));
     }
 
     // Whether a node is no solid but stands for the ground.
@@ -212,8 +239,30 @@ class Importer {
         if (!object) {
             const bool over_limit = object.error().code == ErrorCode::kTooLarge;
             refuse_node(node, ": " + object.error().message, over_limit);
+            return ObjectId{1};
         }
-        return object.value_or(ObjectId{1});
+        read_object_extras(*object, node, primitive.material);
+        return *object;
+    }
+
+    void read_object_extras(ObjectId object, std::size_t node, std::size_t material) {
+        if (object > object_count_) {
+            object_count_ = object;
+            made_.sources.push_back(
+                source_of(scene_, node, "/objects/" + std::to_string(object - 1))
+            );
+        }
+        const Extra& of_node = scene_.nodes[node].extras;
+        if (of_node.find("decorates") == nullptr) {
+            fields_.read_node(object, share(of_node), extras_of(scene_, node));
+        }
+        fields_.read_material(
+            object,
+            share(scene_.material_extras[material]),
+            {"",
+             "/materials/" + std::to_string(material) + "/extras",
+             "material " + quoted(scene_.kit.materials[material].name)}
+        );
     }
 
     void add_soups(std::size_t node, const std::vector<Point>& places) {
@@ -244,7 +293,7 @@ class Importer {
         for (const Point& point : points_) {
             box.extend(point);
         }
-        extent_ = box.isEmpty() ? 1 : std::max(box.sizes().maxCoeff(), 1e-6);
+        extent_ = extent_of(box);
         const std::vector<std::uint32_t> welded = weld(points_, kWeldTolerance * extent_);
         for (Soup& soup : soups_) {
             std::size_t kept = 0;
@@ -285,33 +334,17 @@ class Importer {
             );
         }
         for (TriangleSolid& solid : found.solids) {
-            solid.polyhedron.name = shortened(name_of(soup.node));
+            solid.polyhedron.name = shortened(name_of(scene_, soup.node));
             solid.polyhedron.object = soup.object;
-            Source source = {soup.node, {}};
+            SolidOrigin source = {soup.node, {}};
             for (const std::uint32_t triangle : solid.triangles) {
                 source.triangles.push_back(soup.numbers[triangle]);
             }
-            sources_.push_back(std::move(source));
+            made_.sources.push_back(source_of(
+                scene_, soup.node, "/polyhedra/" + std::to_string(example_.polyhedra.size())
+            ));
+            origins_.push_back(std::move(source));
             example_.polyhedra.push_back(std::move(solid.polyhedron));
-        }
-    }
-
-    void apply_settings() {
-        example_.bounds = settings_.bounds;
-        example_.size = settings_.size.value_or(example_.size);
-        example_.density = settings_.density.value_or(example_.density);
-        for (const ImportSettings::NamedDimension& dimension : settings_.dimensions) {
-            const auto found = std::find_if(
-                example_.objects.begin(),
-                example_.objects.end(),
-                [&](const ObjectType& object) { return object.name == dimension.object; }
-            );
-            if (found == example_.objects.end()) {
-                refuse(dimension.pointer, "no node is of object " + quoted(dimension.object));
-                continue;
-            }
-            const auto number = found - example_.objects.begin() + 1;
-            example_.dimensions.push_back({static_cast<ObjectId>(number), dimension.normal});
         }
     }
 
@@ -325,7 +358,7 @@ class Importer {
                 refuse("", fault.detail, fault.over_limit);
                 continue;
             }
-            const Source& source = sources_[number_after(pointer, kPolyhedra)];
+            const SolidOrigin& source = origins_[number_after(pointer, kPolyhedra)];
             std::string place;
             if (pointer.find(kFaces) != std::string_view::npos) {
                 const std::size_t face = number_after(pointer, kFaces);
@@ -342,25 +375,31 @@ class Importer {
         return number;
     }
 
+    std::shared_ptr<const GlbScene> shared_;
     const GlbScene& scene_;
-    ImportSettings settings_;
-    Example example_;
+    ImportedExample made_;
+    Example& example_ = made_.example;
+    RefuseSource refuse_source_;
+    Attachments attachments_;
+    ObjectFields fields_;
+    std::map<std::string, std::uint32_t, std::less<>> materials_;  // of objects that have solids
+    ObjectId object_count_ = 0;
     ImportObjects objects_;
     std::vector<Point> points_;
     std::vector<Soup> soups_;
-    std::vector<Source> sources_;  // of the example's polyhedra
+    std::vector<SolidOrigin> origins_;  // of the example's polyhedra
     std::vector<Fault> faults_;
     double extent_ = 1;
 };
 
 }  // namespace
 
-Result<Example> read_example_glb(std::span<const std::byte> bytes) {
-    const auto scene = read_glb_scene(bytes);
+Result<ImportedExample> read_example_glb(std::span<const std::byte> bytes) {
+    auto scene = read_glb_scene(bytes);
     if (!scene) {
-        return tl::unexpected(scene.error());
+        return tl::unexpected(std::move(scene.error()));
     }
-    return Importer(*scene).run();
+    return Importer(std::make_shared<const GlbScene>(std::move(*scene))).run();
 }
 
 }  // namespace modelsynth::continuous

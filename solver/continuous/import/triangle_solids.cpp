@@ -19,20 +19,6 @@ namespace {
 // More hollows than this in one soup are left as solids that look inwards.
 constexpr std::size_t kHollowsMax = 64;
 
-// The number of the corner at which each half-edge begins: triangles have one in common only where
-// they are around it side by side.
-std::vector<std::uint32_t> corners_of(std::span<const HalfEdge> mates) {
-    DisjointSets corners(mates.size());
-    for (HalfEdge half = 0; half < mates.size(); ++half) {
-        corners.join(half, next_in_triangle(mates[half]));
-    }
-    std::vector<std::uint32_t> numbers(mates.size());
-    for (HalfEdge half = 0; half < mates.size(); ++half) {
-        numbers[half] = corners.find(half);
-    }
-    return numbers;
-}
-
 double volume_of(const Polyhedron& solid) {
     const Point& origin = solid.corners.front();
     double sum = 0;
@@ -131,7 +117,7 @@ TriangleSolids find_triangle_solids(
         }
     }
     for (const MergedFace& merged : merge_faces(points, triangles, mates, corners, tolerance)) {
-        TriangleSolid& solid = found.solids[solid_of[parts.find(merged.triangle)]];
+        TriangleSolid& solid = found.solids[solid_of[parts.find(merged.triangles.front())]];
         Face& face = solid.polyhedron.faces.emplace_back();
         for (const HalfEdge half : merged.border) {
             std::uint32_t& number = number_of[corners[half]];
@@ -141,7 +127,7 @@ TriangleSolids find_triangle_solids(
             }
             face.push_back(number);
         }
-        solid.triangles.push_back(merged.triangle);
+        solid.triangles.push_back(merged.triangles.front());
     }
     place_hollows(found.solids);
     return found;

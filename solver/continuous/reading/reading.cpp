@@ -2,7 +2,12 @@
 
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/reading/variants.h"
+#include "solver/continuous/shapes/cut_boxes.h"
+#include "solver/continuous/symmetry/figure_images.h"
+#include "solver/continuous/symmetry/plane_images.h"
+#include "solver/continuous/symmetry/shape_images.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -59,6 +64,60 @@ std::array<double, 3> steps_along_axes(const Parameters& parameters) {
     return steps;
 }
 
+// All that these turns and symmetries make of a model.
+std::vector<TurnMatrix> with_symmetries(
+    const std::vector<TurnMatrix>& turns, std::span<const SymmetryRule> symmetries
+) {
+    std::vector<TurnMatrix> generators = turns;
+    for (const TurnMatrix& turn : turns_of(symmetries)) {
+        generators.push_back(turn);
+    }
+    return symmetries.empty() ? turns : group_of(generators);
+}
+
+// The solids of shapes, and what was cut off them.
+Example shapes_alone(Example example) {
+    std::erase_if(example.polyhedra, [&example](const Polyhedron& solid) {
+        return !has_image_by_shape(example, solid.object);
+    });
+    return example;
+}
+
+// Which objects become which does not depend on how boxes are cut, and cut ones have no images yet.
+void fill_mirrors_without_cuts(const Example& example, ReadingOptions& options) {
+    const bool are_filled = std::all_of(
+        options.symmetries.begin(),
+        options.symmetries.end(),
+        [](const SymmetryRule& rule) { return rule.mirror.has_value(); }
+    );
+    if (are_filled) {
+        return;
+    }
+    Example whole = with_whole_boxes(example);
+    ReadingOptions of_whole = {options.variants, {}, {}, 0, {}};
+    for (const ObjectId object : options.apart) {
+        if (options.variants != Variants() && object <= whole.objects.size()) {
+            of_whole.apart.push_back(object);
+        }
+    }
+    const auto reading = ExampleReading::make(std::move(whole), std::move(of_whole));
+    for (SymmetryRule& rule : options.symmetries) {
+        if (rule.mirror) {
+            continue;
+        }
+        rule.mirror.emplace();
+        if (!reading || !have_images((*reading)->topes(), turns_of(std::span(&rule, 1)).front())) {
+            continue;
+        }
+        rule.mirror = likely_mirror(**reading, rule);
+        const Example& read = (*reading)->example();
+        std::erase_if(*rule.mirror, [&read](const auto& pair) {
+            return read.objects[find_object(read, pair.first) - 1U].shape != nullptr ||
+                   read.objects[find_object(read, pair.second) - 1U].shape != nullptr;
+        });
+    }
+}
+
 // A figure of the same cells, numbered otherwise.
 Figure moved_to(const Topes& to, const Figure& figure, const Topes& from) {
     Figure moved(figure.size(), 0);
@@ -100,19 +159,24 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
             std::move(faults)});
     }
     const std::vector<TurnMatrix> turns = turns_of(options.variants);
-    if (example.objects.size() + (turns.size() - 1) * options.apart.size() > kObjectTypesMax) {
+    const std::vector<TurnMatrix> all_turns = with_symmetries(turns, options.symmetries);
+    if (example.objects.size() + (all_turns.size() - 1) * options.apart.size() > kObjectTypesMax) {
         return tl::unexpected(Error{
             ErrorCode::kTooLarge,
             "turned objects that have a dimension or a shape count as others, and those come to "
             "more than " +
                 std::to_string(kObjectTypesMax)});
     }
-    example = with_variant_objects(std::move(example), turns, options.apart);
+    example = with_variant_objects(std::move(example), all_turns, options.apart);
     std::vector<Example> images;
     for (const TurnMatrix& turn : turns) {
         images.push_back(turned_solids(example, turn));
     }
-    auto families = find_families(images);
+    std::vector<Example> with_faces = images;
+    for (std::size_t i = 1; i < all_turns.size() && !options.symmetries.empty(); ++i) {
+        with_faces.push_back(turned_solids(shapes_alone(example), all_turns[i]));
+    }
+    auto families = find_families(with_faces);
     if (!families) {
         return tl::unexpected(std::move(families.error()));
     }
@@ -129,6 +193,9 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
             return tl::unexpected(std::move(figures.error()));
         }
         std::move(figures->begin(), figures->end(), std::back_inserter(seeds));
+    }
+    if (!options.symmetries.empty()) {
+        add_images_of_shapes(seeds, *topes, example, options.symmetries, kFiguresMax);
     }
     std::optional<Nudged> nudged;
     if (options.nudge_degrees > 0) {
@@ -168,9 +235,17 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
 Result<std::shared_ptr<const ExampleReading>> ExampleReading::read_for(
     const std::shared_ptr<const ExampleReading>& reading, const Parameters& parameters
 ) {
-    ReadingOptions options = {parameters.variants, {}, parameters.nudge, {}};
+    ReadingOptions options = {parameters.variants, {}, {}, parameters.nudge, {}};
     if (options.variants != Variants()) {
         options.apart = turned_apart(reading->example(), parameters);
+    }
+    options.symmetries = symmetries_of_shapes(reading->example(), parameters);
+    if (!options.symmetries.empty()) {
+        const Example plain = without_variant_objects(reading->example());
+        if (options.variants == Variants()) {
+            options.apart = shapes_of(plain);
+        }
+        fill_mirrors_without_cuts(plain, options);
     }
     if (options.nudge_degrees > 0) {
         options.steps = steps_along_axes(parameters);

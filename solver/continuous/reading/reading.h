@@ -23,6 +23,8 @@ namespace modelsynth::continuous {
 struct ReadingOptions {
     Variants variants;
     std::vector<ObjectId> apart;  // those that become objects of their own; see turned_apart()
+    // Those that shapes need images for, mirrors filled in; see shape_images.h.
+    std::vector<SymmetryRule> symmetries;
     double nudge_degrees = 0;
     std::array<double, 3> steps = {};  // of the lattice to nudge to, metres; or 0
 

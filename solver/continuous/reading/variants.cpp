@@ -84,6 +84,19 @@ ObjectId image_of(const Example& example, ObjectId object, const TurnMatrix& tur
 
 }  // namespace
 
+std::vector<TurnMatrix> group_of(const std::vector<TurnMatrix>& generators) {
+    std::vector<TurnMatrix> turns = {TurnMatrix::Identity()};
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        for (const TurnMatrix& generator : generators) {
+            const TurnMatrix next = generator * turns[i];
+            if (std::find(turns.begin(), turns.end(), next) == turns.end()) {
+                turns.push_back(next);
+            }
+        }
+    }
+    return turns;
+}
+
 std::vector<TurnMatrix> turns_of(const Variants& variants) {
     std::vector<TurnMatrix> generators;
     if (variants.turns > 1) {
@@ -97,16 +110,7 @@ std::vector<TurnMatrix> turns_of(const Variants& variants) {
     if (variants.mirror_z) {
         generators.emplace_back(Eigen::Vector3d(1, 1, -1).asDiagonal());
     }
-    std::vector<TurnMatrix> turns = {TurnMatrix::Identity()};
-    for (std::size_t i = 0; i < turns.size(); ++i) {
-        for (const TurnMatrix& generator : generators) {
-            const TurnMatrix next = generator * turns[i];
-            if (std::find(turns.begin(), turns.end(), next) == turns.end()) {
-                turns.push_back(next);
-            }
-        }
-    }
-    return turns;
+    return group_of(generators);
 }
 
 std::vector<ObjectId> turned_apart(const Example& example, const Parameters& parameters) {

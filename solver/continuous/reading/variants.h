@@ -13,6 +13,10 @@ namespace modelsynth::continuous {
 // that leaves y, exact (parts are 0, 1 and -1).
 using TurnMatrix = Eigen::Matrix3d;
 
+// All that turns make of a model one after another, the unmoved one first: the group that they
+// generate. Requires: it is finite.
+[[nodiscard]] std::vector<TurnMatrix> group_of(const std::vector<TurnMatrix>& generators);
+
 // All the ways an example is read, the unmoved one first: the group that the variants generate.
 [[nodiscard]] std::vector<TurnMatrix> turns_of(const Variants& variants);
 

@@ -1,7 +1,9 @@
 #include "solver/continuous/symmetry/figure_images.h"
 
+#include "solver/continuous/symmetry/figure_mover.h"
 #include "solver/continuous/symmetry/motion.h"
 #include "solver/continuous/symmetry/plane_images.h"
+#include "solver/continuous/symmetry/shape_images.h"
 #include "solver/core/label_images.h"
 
 #include <algorithm>
@@ -19,59 +21,20 @@ constexpr int kPassesMax = 8;
 // Looks at images of figures, besides as many for what is found: some tenths of a second.
 constexpr std::int64_t kLooksMax = std::int64_t{1} << 19;
 
-std::vector<Tope> tope_images(const Topes& topes, const Eigen::Matrix3d& turn) {
-    std::vector<FamilyImage> families;
-    for (std::size_t i = 0; i < topes.family_count(); ++i) {
-        families.push_back(family_image(topes, i, turn).value());
-    }
-    std::vector<Tope> images;
-    for (std::size_t t = 0; t < topes.count(); ++t) {
-        FamilySet sides = 0;
-        for (std::size_t i = 0; i < families.size(); ++i) {
-            const bool is_above = (topes.sides(static_cast<Tope>(t)) >> i & 1) != 0;
-            if (is_above != families[i].is_turned_round) {
-                sides |= FamilySet{1} << families[i].family;
-            }
-        }
-        images.push_back(topes.tope_of(sides));
-    }
-    return images;
-}
-
-// Figures as a motion and a map of objects leave them.
-class FigureMover {
-  public:
-    FigureMover(const Figures& figures, const SymmetryRule& rule)
-        : figures_(&figures), topes_(tope_images(figures.topes(), motion_of(rule, {}).turn)) {}
-
-    [[nodiscard]] Label image(Label label, const std::vector<Label>& objects) const {
-        const Figure& figure = figures_->at(label);
-        Figure moved(figure.size(), 0);
-        for (std::size_t t = 0; t < figure.size(); ++t) {
-            moved[topes_[t]] = static_cast<char>(objects[static_cast<ObjectId>(figure[t])]);
-        }
-        return figures_->find(moved);
-    }
-
-  private:
-    const Figures* figures_;
-    std::vector<Tope> topes_;
-};
-
 // A map of objects on its way to more figures that have images.
 class MirrorSearch {
   public:
     MirrorSearch(const ExampleReading& reading, const SymmetryRule& rule)
-        : ground_(reading.example().ground),
-          mover_(reading.figures(), rule),
+        : example_(&reading.example()),
+          figures_(&reading.figures()),
+          mover_(reading.topes(), motion_of(rule, {}).turn),
           figures_with_(reading.example().objects.size() + 1),
           has_image_(reading.figures().count()),
-          images_(figures_with_.size()) {
-        std::iota(images_.begin(), images_.end(), Label{0});
+          images_(object_images(reading.example(), {rule.kind})) {
         const Figures& figures = reading.figures();
         for (std::size_t l = 0; l < figures.count(); ++l) {
             const auto label = static_cast<Label>(l);
-            has_image_[l] = mover_.image(label, images_) != kNoLabel;
+            has_image_[l] = has_image(label);
             const Figure& figure = figures.at(label);
             for (const char object : std::set<char>(figure.begin(), figure.end())) {
                 figures_with_[static_cast<ObjectId>(object)].push_back(label);
@@ -123,9 +86,13 @@ class MirrorSearch {
     [[nodiscard]] const std::vector<Label>& images() const { return images_; }
 
   private:
+    [[nodiscard]] bool has_image(Label label) const {
+        return figures_->find(mover_.moved(figures_->at(label), images_)) != kNoLabel;
+    }
+
     // How many figures more would have images.
     [[nodiscard]] std::ptrdiff_t gain_of(std::size_t a, std::size_t b, bool in_pairs_only) {
-        if (a == ground_ || b == ground_) {
+        if (is_settled(a) || is_settled(b)) {
             return 0;
         }
         if (in_pairs_only && (images_[a] != a || images_[b] != b)) {
@@ -135,18 +102,21 @@ class MirrorSearch {
         std::ptrdiff_t gain = 0;
         for_each_figure_with(a, b, [&](Label label) {
             --looks_left_;
-            gain += std::ptrdiff_t{mover_.image(label, images_) != kNoLabel} -
-                    std::ptrdiff_t{has_image_[label]};
+            gain += std::ptrdiff_t{has_image(label)} - std::ptrdiff_t{has_image_[label]};
         });
         std::swap(images_[a], images_[b]);
         return gain;
     }
 
+    // The ground stays what it is, and a shape becomes what it looks like.
+    [[nodiscard]] bool is_settled(std::size_t object) const {
+        return object == example_->ground ||
+               has_image_by_shape(*example_, static_cast<ObjectId>(object));
+    }
+
     void exchange(std::size_t a, std::size_t b) {
         std::swap(images_[a], images_[b]);
-        for_each_figure_with(a, b, [&](Label label) {
-            has_image_[label] = mover_.image(label, images_) != kNoLabel;
-        });
+        for_each_figure_with(a, b, [&](Label label) { has_image_[label] = has_image(label); });
     }
 
     template <class Visit>
@@ -164,7 +134,8 @@ class MirrorSearch {
         }
     }
 
-    std::optional<ObjectId> ground_;  // stays what it is
+    const Example* example_;
+    const Figures* figures_;
     FigureMover mover_;
     std::vector<std::vector<Label>> figures_with_;  // by object, in rising order
     std::vector<bool> has_image_;                   // by figure
@@ -201,7 +172,7 @@ NamePairs likely_mirror(const ExampleReading& reading, const SymmetryRule& rule)
     NamePairs names;
     for (std::size_t object = 1; object < best.images().size(); ++object) {
         const Label image = best.images()[object];
-        if (image != object) {
+        if (image != object && !has_image_by_shape(example, static_cast<ObjectId>(object))) {
             names.emplace_back(example.objects[object - 1].name, example.objects[image - 1U].name);
         }
     }
@@ -210,17 +181,22 @@ NamePairs likely_mirror(const ExampleReading& reading, const SymmetryRule& rule)
 
 void fill_mirrors(const ExampleReading& reading, Parameters& parameters) {
     const Topes& topes = reading.topes();
+    // Where shapes have images, the example was read with a mirror.
+    auto known = reading.options().symmetries.begin();
     for (Constraint& constraint : *parameters.constraints) {
         auto* rule = std::get_if<SymmetryRule>(&constraint.rule);
-        if (rule == nullptr || rule->mirror) {
+        if (rule == nullptr) {
             continue;
         }
-        const Motion motion = motion_of(*rule, *parameters.size);
-        bool is_whole = true;
-        for (std::size_t i = 0; i < topes.family_count(); ++i) {
-            is_whole = is_whole && family_image(topes, i, motion.turn);
+        const bool is_known = known != reading.options().symmetries.end() &&
+                              rule->kind != SymmetryRule::Kind::kTranslate;
+        if (is_known) {
+            rule->mirror = (known++)->mirror;
         }
-        if (is_whole) {
+        if (rule->mirror) {
+            continue;
+        }
+        if (have_images(topes, motion_of(*rule, {}).turn)) {
             rule->mirror = likely_mirror(reading, *rule);
         }
     }
@@ -228,15 +204,17 @@ void fill_mirrors(const ExampleReading& reading, Parameters& parameters) {
 
 std::vector<Label> figure_images(const ExampleReading& reading, const SymmetryRule& rule) {
     const Example& example = reading.example();
-    const std::vector<Label> objects = label_images(
-        example.objects.size() + 1,
-        object_pairs(example, rule.mirror ? *rule.mirror : likely_mirror(reading, rule))
-    );
+    SymmetryRule complete = rule;
+    if (!complete.mirror) {
+        complete.mirror = likely_mirror(reading, rule);
+    }
+    const std::vector<Label> objects = object_images(example, complete);
     const Figures& figures = reading.figures();
-    const FigureMover mover(figures, rule);
+    const FigureMover mover(reading.topes(), motion_of(rule, {}).turn);
     std::vector<Label> images;
     for (std::size_t label = 0; label < figures.count(); ++label) {
-        images.push_back(mover.image(static_cast<Label>(label), objects));
+        const Figure moved = mover.moved(figures.at(static_cast<Label>(label)), objects);
+        images.push_back(figures.find(moved));
     }
     return images;
 }

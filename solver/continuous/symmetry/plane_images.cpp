@@ -26,6 +26,15 @@ std::optional<FamilyImage> family_image(
     return FamilyImage{*image, normal.dot(topes.normals()[*image]) < 0};
 }
 
+bool have_images(const Topes& topes, const Eigen::Matrix3d& turn) {
+    for (std::size_t family = 0; family < topes.family_count(); ++family) {
+        if (!family_image(topes, family, turn)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::optional<double> plane_without_image(
     const Topes& topes,
     std::size_t family,

@@ -27,6 +27,9 @@ struct FamilyImage {
     const Topes& topes, std::size_t family, const Eigen::Matrix3d& turn
 );
 
+// Whether every family has an image.
+[[nodiscard]] bool have_images(const Topes& topes, const Eigen::Matrix3d& turn);
+
 // The first plane of a family, by offset, whose image is in the model and no plane of it.
 // Shape: `planes` has the offsets of every family's planes, in rising order; `size` is the model's
 // in metres. Requires: the family has an image.

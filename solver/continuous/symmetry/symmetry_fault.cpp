@@ -2,6 +2,7 @@
 
 #include "solver/continuous/symmetry/figure_images.h"
 #include "solver/continuous/symmetry/plane_images.h"
+#include "solver/continuous/symmetry/shape_images.h"
 #include "solver/core/label_images.h"
 
 #include <cstdio>
@@ -69,6 +70,18 @@ std::optional<SymmetryFault> find_symmetry_fault(
         );
         if (fault) {
             return SymmetryFault{"/mirror", std::move(*fault)};
+        }
+        const std::vector<Label> images = object_images(example, rule);
+        for (const auto& [from, to] : object_pairs(example, *rule.mirror)) {
+            for (const Label object : {from, to}) {
+                if (images[from] != to &&
+                    has_image_by_shape(example, static_cast<ObjectId>(object))) {
+                    return SymmetryFault{
+                        "/mirror",
+                        "what becomes of object \"" + example.objects[object - 1U].name +
+                            "\" follows from its shape"};
+                }
+            }
         }
     }
     const Topes& topes = reading.topes();

@@ -3,6 +3,7 @@
 #include "solver/continuous/check/flat.h"
 #include "solver/continuous/check/solid_check.h"
 #include "solver/continuous/import/default_spacing.h"
+#include "solver/continuous/import/node_meshes.h"
 #include "solver/continuous/reading/families.h"
 #include "solver/continuous/reading/reading.h"
 #include "solver/continuous/triangulation/triangulation.h"
@@ -22,6 +23,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -126,7 +128,13 @@ class GlbBuilder {
                "JSON" + json + word(data_.size()) + std::string("BIN\0", 4) + data_;
     }
 
-    [[nodiscard]] Result<Example> read() const { return read_example_glb(bytes_of(bytes())); }
+    [[nodiscard]] Result<ImportedExample> read_all() const {
+        return read_example_glb(bytes_of(bytes()));
+    }
+
+    [[nodiscard]] Result<Example> read() const {
+        return read_all().map([](ImportedExample read) { return std::move(read.example); });
+    }
 
     // "pointer: detail" of every fault, one a line.
     [[nodiscard]] std::string faults() const {
@@ -256,8 +264,9 @@ TEST(MeshImport, NodesStandWhereTheSceneHasThem) {
     scene.groups = {{"", {{0, 0, {10, 0, 0}, 0}}}, {"group", {{0, 1, {13, 5, 0}, 1}}}};
     const auto glb = write_glb(scene);
     ASSERT_TRUE(glb);
-    const auto example = read_example_glb(bytes_of(*glb));
-    ASSERT_TRUE(example) << example.error().message;
+    const auto read = read_example_glb(bytes_of(*glb));
+    ASSERT_TRUE(read) << read.error().message;
+    const Example* const example = &read->example;
     ASSERT_EQ(example->polyhedra.size(), 2U);
     Eigen::AlignedBox3d second;
     for (const Point& corner : example->polyhedra[1].corners) {
@@ -422,41 +431,146 @@ TEST(MeshImport, AFlatNodeIsTheGround) {
     );
 }
 
-TEST(MeshImport, TakesSettingsFromTheExtras) {
-    GlbBuilder builder = one(triangles_of(box(1, {0, 0, 0}, {1, 1, 1})));
-    builder.asset_extras(R"({"spacing":3,"density":0.5,"program":"x"})")
-        .scene_extras(R"({"spacing":2,"size":[10,5,8],"bounds":{"min":[-1,-1,-1],"max":[2,2,0.5]},)"
-                      R"("dimensions":[{"object":"wall","normal":[0,0,2]}]})");
-    const auto example = builder.read();
-    ASSERT_TRUE(example) << builder.faults();
-    EXPECT_EQ(example->spacing, 2);
-    EXPECT_EQ(example->density, 0.5);
-    EXPECT_EQ(example->size, (std::array<double, 3>{10, 5, 8}));
-    ASSERT_TRUE(example->bounds);
-    EXPECT_EQ(example->bounds->max, Point(2, 2, 0.5));
-    ASSERT_EQ(example->dimensions.size(), 1U);
-    EXPECT_EQ(example->dimensions.front().object, 1);
-    EXPECT_EQ(example->dimensions.front().normal, Point(0, 0, 2));
+// "in_example from in_file of who", a line each.
+std::string said_by(const GlbBuilder& builder) {
+    const auto read = builder.read_all();
+    std::string text;
+    if (read) {
+        for (const SaidField& field : read->said) {
+            text += field.source.in_example + " from " + field.source.in_file + " of " +
+                    field.source.who + "\n";
+        }
+    }
+    return text + builder.faults();
 }
 
-TEST(MeshImport, NamesSettingsThatMeanNothing) {
+TEST(MeshImport, TellsWhatExtrasSayOfTheExample) {
     GlbBuilder builder = one(triangles_of(box(1, {0, 0, 0}, {1, 1, 1})));
-    builder.asset_extras(R"({"spacing":-1})")
-        .scene_extras(R"({"size":[10,5],"density":"full","bounds":{"min":[0,0,0],"max":[1,1]},)"
-                      R"("dimensions":[{"normal":[0,0,2]},{"object":"wall","normal":[0,0,0]}]})");
-    const std::string faults = builder.faults();
-    for (const char* pointer :
-         {"/asset/extras/spacing: ",
-          "/scenes/0/extras/size: ",
-          "/scenes/0/extras/density: ",
-          "/scenes/0/extras/bounds: ",
-          "/scenes/0/extras/dimensions/0: ",
-          "/scenes/0/extras/dimensions/1: "}) {
-        EXPECT_TRUE(contains(faults, pointer)) << faults;
-    }
-    builder.asset_extras("{}").scene_extras(R"({"dimensions":[{"object":"door","normal":[0,0,2]}]})"
+    builder.asset_extras(R"({"spacing":3,"program":"x"})")
+        .scene_extras(R"({"spacing":2,"constraints":[],"name":7})");
+    EXPECT_EQ(
+        said_by(builder),
+        "/spacing from /asset/extras/spacing of the file\n"
+        "/name from /scenes/0/extras/name of the scene\n"
+        "/spacing from /scenes/0/extras/spacing of the scene\n"
+        "/constraints from /scenes/0/extras/constraints of the scene\n"
     );
-    EXPECT_EQ(builder.faults(), "/scenes/0/extras/dimensions/0: no node is of object \"door\"\n");
+    const auto read = builder.read_all();
+    EXPECT_EQ(*read->said[3].value, Extra{Extra::List()});  // empty, and said
+}
+
+TEST(MeshImport, TellsWhatExtrasSayOfObjects) {
+    const Corners cube = triangles_of(box(1, {0, 0, 0}, {1, 1, 1}));
+    GlbBuilder builder;
+    builder.node("A", {{0, cube}}, R"("extras":{"weight":2147483648,"more":1})")
+        .node("B", {{0, cube}}, R"("translation":[3,0,0],"extras":{"weight":2147483648})")
+        .node("C", {{1, cube}}, R"("translation":[6,0,0],"extras":{"decorations":"[]"})");
+    EXPECT_EQ(
+        said_by(builder),
+        "/objects/0/weight from /nodes/0/extras/weight of node \"A\"\n"
+        "/objects/1/decorations from /nodes/2/extras/decorations of node \"C\"\n"
+    );
+    EXPECT_EQ(*builder.read_all()->said[0].value, Extra{2147483648.0});
+    builder.node("D", {{0, cube}}, R"("translation":[9,0,0],"extras":{"weight":3})");
+    EXPECT_EQ(
+        builder.faults(), "/nodes/3/extras/weight: node \"D\" says otherwise than node \"A\"\n"
+    );
+}
+
+TEST(MeshImport, TakesNodesForShapesAndDecorations) {
+    const Corners cube = triangles_of(box(1, {0, 0, 0}, {1, 1, 1}));
+    const Corners gem =
+        triangles_of(examples::pyramid(1, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0, {0.5, 1, -0.5}));
+    const Corners profile = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 0, 0}, {2, 1, 0}, {0, 1, 0}};
+    GlbBuilder builder;
+    builder.node("gem", {{1, gem}}, R"("extras":{"shape":"wall","even":"x z"})")
+        .node("house", {{0, cube}})
+        .node(
+            "coping",
+            {{0, profile}},
+            R"("translation":[7,0,0],"extras":{"decorates":"wall",)"
+            R"("edges":"up side"})"
+        )
+        .node(
+            "ball",
+            {{1, gem}},
+            R"("translation":[9,0,0],"scale":[2,2,2],"extras":)"
+            R"({"decorates":"wall","corners":"any any any","smooth":0})"
+        );
+    EXPECT_EQ(
+        said_by(builder),
+        "/objects/0/shape/even from /nodes/0/extras/even of node \"gem\"\n"
+        "/objects/0/decorations/0/edges from /nodes/2/extras/edges of node \"coping\"\n"
+        "/objects/0/decorations/1/corners from /nodes/3/extras/corners of node \"ball\"\n"
+        "/objects/0/decorations/1/mesh/smooth from /nodes/3/extras/smooth of node \"ball\"\n"
+    );
+    const Example example = builder.read_all()->example;
+    EXPECT_EQ(example.polyhedra.size(), 1U);
+    ASSERT_EQ(example.objects.size(), 2U);
+    ASSERT_NE(example.objects[0].shape, nullptr);
+    EXPECT_EQ(example.objects[0].shape->faces.size(), 5U);
+    ASSERT_EQ(example.objects[0].decorations.size(), 2U);
+    const auto& coping = std::get<EdgeDecoration>(example.objects[0].decorations[0]);
+    EXPECT_EQ(coping.profile, (std::vector<ProfilePoint>{{0, 0}, {2, 0}, {2, 1}, {0, 1}}));
+    EXPECT_EQ(coping.look, kEmpty);
+    const auto& ball = std::get<CornerDecoration>(example.objects[0].decorations[1]);
+    EXPECT_EQ(example.objects[ball.look - 1U].name, "roof");
+    Eigen::AlignedBox3d box;
+    for (const Point& corner : ball.mesh->corners) {
+        box.extend(corner);
+    }
+    EXPECT_EQ(box.max(), Point(2, 2, 0));
+}
+
+TEST(MeshImport, NamesNodesThatAreNoShapesOrDecorations) {
+    const Corners cube = triangles_of(box(1, {0, 0, 0}, {1, 1, 1}));
+    Corners open = cube;
+    open.resize(open.size() - 3);
+    GlbBuilder builder;
+    builder.node("house", {{0, cube}})
+        .node("a", {{0, cube}}, R"("extras":{"shape":"door"})")
+        .node("b", {{0, open}}, R"("extras":{"shape":"wall"})")
+        .node("c", {{0, cube}}, R"("extras":{"decorates":"wall","edges":"up side"})")
+        .node("d", {{0, cube}}, R"("extras":{"decorates":"wall"})")
+        .node("e", {{0, cube}}, R"("extras":{"decorates":7,"corners":"any any any"})");
+    const std::string faults = builder.faults();
+    for (const char* fault :
+         {"/nodes/1/extras/shape: node \"a\": no other node is of object \"door\"\n",
+          "/nodes/2: node \"b\" is not closed: the edge from ",
+          "/nodes/3: node \"c\" is to be swept along edges, but is no flat mesh",
+          "/nodes/4: node \"d\" decorates \"wall\", and must have \"edges\" or \"corners\"\n",
+          "/nodes/5/extras/decorates: node \"e\": no other node is of object \"\"\n"}) {
+        EXPECT_TRUE(contains(faults, fault)) << faults;
+    }
+}
+
+TEST(NodeMeshes, CutFacesThatAreNotConvex) {
+    const auto shape = shape_of_mesh(
+        triangles_of(prism_upwards(1, {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}}, 0, 1))
+    );
+    ASSERT_TRUE(shape) << shape.error();
+    EXPECT_EQ(shape->corners.size(), 12U);
+    EXPECT_EQ(shape->faces.size(), 6U + 2 * 4U);  // sides, and four triangles at either end
+    Example example;
+    example.materials = {{}};
+    example.objects = {{"shape"}};
+    example.polyhedra = {{"shape", 1, shape->corners, shape->faces}};
+    EXPECT_TRUE(find_solid_faults(example).empty());
+}
+
+TEST(NodeMeshes, ProfilesAreOneOutline) {
+    const Corners square = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    Corners both = square;
+    for (const Point& corner : square) {
+        both.push_back(corner + Point(5, 0, 0));
+    }
+    EXPECT_TRUE(profile_of_mesh(square));
+    EXPECT_FALSE(profile_of_mesh(both));
+    Corners twice = square;
+    twice.insert(twice.end(), square.begin(), square.end());
+    EXPECT_FALSE(profile_of_mesh(twice));
+    EXPECT_FALSE(profile_of_mesh(Corners(3, Point(1, 2, 3))));
+    EXPECT_FALSE(profile_of_mesh(quad(0)));
 }
 
 TEST(MeshImport, ToleratesTheNoiseOfSinglePrecision) {

@@ -129,8 +129,9 @@ TEST(Textures, CoordinatesAreInRepeats) {
 }
 
 TEST(Textures, ComeBackFromAFile) {
-    const auto example = read_example_glb(bytes_of(make_file()));
-    ASSERT_TRUE(example) << example.error().message;
+    const auto read = read_example_glb(bytes_of(make_file()));
+    ASSERT_TRUE(read) << read.error().message;
+    const Example* const example = &read->example;
     ASSERT_EQ(example->materials.size(), 4U);
     for (const std::size_t i : {0U, 1U, 2U}) {
         ASSERT_TRUE(example->materials[i].texture) << i;
@@ -146,7 +147,7 @@ TEST(Textures, ComeBackFromAFile) {
 
 TEST(Textures, RepeatEveryMetreIfNothingIsSaid) {
     const std::string silent = changed(make_file(), R"("metres":0.5)", R"("other":0.5)");
-    EXPECT_EQ(read_example_glb(bytes_of(silent))->materials[0].texture->repeat_m, 1);
+    EXPECT_EQ(read_example_glb(bytes_of(silent))->example.materials[0].texture->repeat_m, 1);
 }
 
 TEST(Textures, EqualImagesAreTheSame) {
@@ -157,8 +158,9 @@ TEST(Textures, EqualImagesAreTheSame) {
                ",\"mimeType\":\"" + type + "\"";
     };
     const std::string twice = changed(make_file(), view(1, "image/jpeg"), view(0, "image/png"));
-    const auto example = read_example_glb(bytes_of(twice));
-    ASSERT_TRUE(example) << example.error().message;
+    const auto read = read_example_glb(bytes_of(twice));
+    ASSERT_TRUE(read) << read.error().message;
+    const Example* const example = &read->example;
     EXPECT_EQ(example->materials[2].texture->image, example->materials[0].texture->image);
 }
 
