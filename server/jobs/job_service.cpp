@@ -34,7 +34,8 @@ Parsed<T> parsed(Stored<T> stored) {
     }
 }
 
-// What a job of no labels costs, in labels: it is read, logged, kept and sent all the same.
+// What a job of no labels costs, in choices of labels: it is read, logged, kept and sent all the
+// same.
 constexpr std::uint64_t kJobCost = 1000;
 
 const char* profile_name(GlbProfile profile) {
@@ -57,7 +58,7 @@ CapacityLimits capacity_of(const JobServiceConfig& config) {
                               static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE)) / 4 * 3;
     }
     // What costs nothing is the least that a job costs.
-    limits.large_cost = kJobCost + config.large_sites;
+    limits.large_cost = kJobCost + config.large_choices;
     limits.large_jobs = std::max<std::size_t>(1, config.workers - 1);
     return limits;
 }
@@ -192,7 +193,7 @@ Parsed<Submitted> JobService::submit(
         ));
     }
     NewJob job;
-    job.cost = kJobCost + need.sites;
+    job.cost = kJobCost + need.choices;
     job.memory_bytes = need.memory_bytes;
     job.created = proto::now_millis();
     job.id = make_job_id(job.created);

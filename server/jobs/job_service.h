@@ -38,8 +38,9 @@ struct JobServiceConfig {
     // Jobs run as long as what they are thought to need has room in it; 0: three quarters of the
     // machine's memory.
     std::uint64_t memory_bytes_max = 0;
-    // A job that chooses more labels is large, and one worker is kept for those that are not.
-    std::uint64_t large_sites = 500'000;
+    // A job that chooses labels more often is a large one, which takes seconds; one worker is kept
+    // for those that are not.
+    std::uint64_t large_choices = 20'000'000;
     proto::RequestLimits limits;
 };
 

@@ -80,9 +80,10 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     )
         ->capture_default_str();
     app.add_option(
-           "--large-sites",
-           config.jobs.large_sites,
-           "Jobs of more labels are large: one worker is kept for the others"
+           "--large-choices",
+           config.jobs.large_choices,
+           "Jobs that choose more labels, overlap included, are large: one worker is kept for the "
+           "others"
     )
         ->capture_default_str();
     app.add_option("--examples-max", config.jobs.examples_max, "Uploaded examples that are kept")

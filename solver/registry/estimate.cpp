@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace modelsynth {
 
@@ -18,12 +19,13 @@ constexpr std::uint64_t kCellOfSpacings = 500;           // between planes of so
 constexpr std::uint64_t kCellOfThreeFamilies = 80;       // for each three that meet in points
 
 Estimate estimate_grid(const discrete::Example& example, const discrete::Parameters& parameters) {
-    Estimate result;
-    result.sites = parameters.size->cell_count();
+    const std::uint64_t cells = parameters.size->cell_count();
     const bool is_whole = !*parameters.blocks;
+    Estimate result;
+    result.choices = cells;
     result.memory_bytes =
-        kAny + result.sites * (kCell + (is_whole ? kCellOfWhole * example.pieces.size() : 0) +
-                               kCellOfRule * parameters.constraints.size());
+        kAny + cells * (kCell + (is_whole ? kCellOfWhole * example.pieces.size() : 0) +
+                        kCellOfRule * parameters.constraints.size());
     return result;
 }
 
@@ -37,11 +39,23 @@ Estimate estimate_solids(
     const std::uint64_t rules = parameters.constraints ? parameters.constraints->size() : 0;
     Estimate result;
     // Planes of three families meet about once in a cell.
-    result.sites = cells.cell_count() * threes;
+    result.choices = cells.cell_count() * threes;
     result.memory_bytes =
         kAny + cells.cell_count() *
                    (kCellOfSpacings + kCellOfThreeFamilies * threes + kCellOfRule * rules);
     return result;
+}
+
+// How often blocks cover a cell, all in all.
+double coverage(const GridSize& model, const BlockLayout& layout) {
+    double times = layout.passes;
+    for (const auto& [cells, block] :
+         {std::pair(model.x, layout.size.x),
+          std::pair(model.y, layout.size.y),
+          std::pair(model.z, layout.size.z)}) {
+        times /= cells > block ? 1 - layout.overlap : 1;
+    }
+    return times;
 }
 
 }  // namespace
@@ -58,7 +72,13 @@ Estimate estimate(const Task& task, std::uint32_t model_count) {
             model_size(task.parameters)
         );
     }
-    result.sites *= std::max(1U, model_count);
+    double times = std::max(1U, model_count);
+    if (const auto layout = block_layout(task.parameters)) {
+        times *= coverage(model_size(task.parameters), *layout);
+    }
+    // Far from what a number holds, whatever was asked for.
+    const double choices = std::min(static_cast<double>(result.choices) * times, 1e15);
+    result.choices = static_cast<std::uint64_t>(choices);
     return result;
 }
 

@@ -8,7 +8,7 @@ namespace modelsynth {
 
 // What running a task takes, by its size and what it asks for, before any of it is done.
 struct Estimate {
-    std::uint64_t sites = 0;         // labels that are chosen, over all models
+    std::uint64_t choices = 0;       // labels that are chosen, each as often as blocks cover it
     std::uint64_t memory_bytes = 0;  // at its peak, with the model as a GLB; rather too much
 };
 

@@ -260,7 +260,7 @@ def test_a_job_that_needs_more_memory_than_there_is_is_refused_with_the_figure(t
 
 
 def test_large_jobs_leave_a_worker_for_small_ones(tmp_path):
-    server = Server(tmp_path / "data", "--large-sites", "10000", workers=2).start()
+    server = Server(tmp_path / "data", "--large-choices", "100000", workers=2).start()
     try:
         large = [server.request("POST", "/v1/jobs", endless()).json() for _ in range(3)]
         small = server.submit(size=(8, 4, 8))

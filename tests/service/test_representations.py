@@ -65,7 +65,7 @@ def test_each_coding_has_a_tag_of_its_own_and_the_same_content(server, paths, na
     assert plain.headers["etag"] == f'"{hashlib.sha256(plain.body).hexdigest()}"'
     assert coded.headers["etag"] == plain.headers["etag"][:-1] + '-gzip"'
     assert coded.headers["content-encoding"] == "gzip" and "content-encoding" not in plain.headers
-    assert coded.headers["vary"] == plain.headers["vary"] == "Accept-Encoding"
+    assert coded.headers["vary"] == plain.headers["vary"] == "Accept-Encoding, Origin"
     assert plain.headers["accept-ranges"] == "bytes" and "accept-ranges" not in coded.headers
     assert coded.headers["content-type"] == plain.headers["content-type"]
     assert gzip.decompress(coded.body) == plain.body
@@ -92,12 +92,12 @@ def test_conditions_and_ranges_are_those_of_the_coding(server, paths, name):
     assert status(If_Match=coded, Accept_Encoding="gzip") == 200
     unchanged = server.get(path, headers={**GZIP, "If-None-Match": coded})
     assert (unchanged.status, unchanged.body) == (304, b"")
-    assert (unchanged.headers["etag"], unchanged.headers["vary"]) == (coded, "Accept-Encoding")
+    assert (unchanged.headers["etag"], unchanged.headers["vary"]) == (coded, "Accept-Encoding, Origin")
 
     part = server.get(path, headers={**GZIP, "Range": "bytes=2-9"})
     assert (part.status, part.body, part.headers["etag"]) == (206, whole.body[2:10], plain)
     assert "content-encoding" not in part.headers
-    assert part.headers["vary"] == "Accept-Encoding"
+    assert part.headers["vary"] == "Accept-Encoding, Origin"
     assert status(Range="bytes=2-9", If_Range=plain, Accept_Encoding="gzip") == 206
     moved = server.get(path, headers={**GZIP, "Range": "bytes=2-9", "If-Range": coded})
     assert (moved.status, moved.body) == (200, whole.body)
@@ -118,14 +118,14 @@ def test_the_weights_of_codings_are_kept(server, paths, name, accepted, coding):
                         {"Accept-Encoding": accepted})
     assert answer.status == 200
     assert answer.headers.get("content-encoding") == coding
-    assert answer.headers["vary"] == "Accept-Encoding"
+    assert answer.headers["vary"] == "Accept-Encoding, Origin"
 
 
 @pytest.mark.parametrize("accepted", ["identity;q=0", "*;q=0", "gzip;q=0, *;q=0", "br, *;q=0"])
 def test_who_takes_no_coding_and_nothing_as_it_is_is_told(server, paths, accepted):
     answer = server.get(paths["model"], headers={"Accept-Encoding": accepted})
     assert_problem(answer, 406)
-    assert answer.headers["vary"] == "Accept-Encoding"
+    assert answer.headers["vary"] == "Accept-Encoding, Origin"
     # What was done is told in any case.
     posted = server.request("POST", "/v1/jobs", job_request(), headers={
         "Accept-Encoding": accepted})
@@ -151,12 +151,12 @@ def test_answers_that_no_tag_can_have_are_coded_when_they_are_long(server):
     for path in ("/healthz", "/v1/jobs/nope"):
         short = server.get(path, headers=GZIP)
         assert len(short.body) < 1024 and "content-encoding" not in short.headers
-        assert short.headers["vary"] == "Accept-Encoding" and short.json()
+        assert short.headers["vary"] == "Accept-Encoding, Origin" and short.json()
 
 
 def test_events_are_never_coded(server, job):
     answer = server.get(job["urls"]["events"], headers=GZIP)
-    assert "content-encoding" not in answer.headers and "vary" not in answer.headers
+    assert "content-encoding" not in answer.headers and answer.headers["vary"] == "Origin"
     assert len(answer.body) > 1024 and answer.body.startswith(b"retry:")
 
 
