@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build ccache
   libboost1.81-dev nlohmann-json3-dev libtinygltf-dev libspdlog-dev libfmt-dev
   libcli11-dev libexpected-dev libsqlite3-dev libssl-dev libpng-dev
-  libcadical-dev libeigen3-dev libmeshoptimizer-dev zlib1g-dev
+  libcadical-dev libeigen3-dev libmeshoptimizer-dev zlib1g-dev prometheus-cpp-dev
 )
 if [ "${1:-build}" = test ]; then
   packages+=(libgtest-dev curl python3 python3-pytest python3-jsonschema

@@ -2,9 +2,11 @@
 #include "server/http/api.h"
 #include "server/http/server.h"
 #include "server/jobs/job_service.h"
+#include "server/log/event_line.h"
 #include "server/ops/config.h"
 #include "server/ops/limits_document.h"
 #include "server/ops/logging.h"
+#include "server/ops/metrics.h"
 #include "server/store/sqlite/sqlite_store.h"
 
 #include <cstdio>
@@ -14,23 +16,27 @@
 namespace {
 
 using namespace modelsynth::server;
+namespace level = spdlog::level;
 
-int serve(const Config& config) {
-    const auto log = make_logger(config.log_level);
-    auto store = SqliteStore::open(config.data_directory, config.retention_ms);
-    if (!store) {
-        std::fprintf(stderr, "modelsynthd: %s\n", store.error().message.c_str());
-        return 1;
-    }
-    JobService service(config.jobs, **store, **store, **store, (*store)->artifacts(), log);
-    Admission admission(config.access);
-    if (const auto loaded = admission.load_keys(); !loaded) {
-        std::fprintf(stderr, "modelsynthd: %s\n", loaded.error().c_str());
-        return 1;
-    }
-    Api api(service, admission, config.http.limits, make_documents(limits_document(config)));
-    HttpServer server(config.http, api, log);
-    const std::uint16_t port = server.listen();
+int refuse_to_start(const std::string& why) {
+    std::fprintf(stderr, "modelsynthd: %s\n", why.c_str());
+    return 1;
+}
+
+std::string metrics_text(
+    Metrics& metrics, SqliteStore& store, const JobService& service, const Logging& logging
+) {
+    const auto space = store.artifacts().space();
+    return metrics.text(
+        {store.queued_count().value_or(0),
+         service.running_count(),
+         space.used_bytes,
+         space.free_bytes,
+         logging.dropped_count()}
+    );
+}
+
+void announce(const Config& config, std::uint16_t port) {
     const bool is_v6 = config.http.address.find(':') != std::string::npos;
     std::printf(
         "listening on http://%s%s%s:%u\n",
@@ -40,16 +46,45 @@ int serve(const Config& config) {
         static_cast<unsigned>(port)
     );
     std::fflush(stdout);
-    log->info("started data={} workers={}", config.data_directory, config.jobs.workers);
-    const auto reload = [&admission, &log] {
+}
+
+int serve(const Config& config) {
+    const Logging logging(config.log);
+    const auto& log = logging.logger();
+    Metrics metrics(version());
+    auto store = SqliteStore::open(config.data_directory, config.retention_ms);
+    if (!store) {
+        return refuse_to_start(store.error().message);
+    }
+    (*store)->on_commit([&metrics](double seconds) { metrics.on_commit(seconds); });
+    JobService service(config.jobs, **store, **store, **store, (*store)->artifacts(), log, metrics);
+    Admission admission(config.access);
+    if (const auto loaded = admission.load_keys(); !loaded) {
+        return refuse_to_start(loaded.error());
+    }
+    Api api(service, admission, config.http.limits, make_documents(limits_document(config)), [&] {
+        return metrics_text(metrics, **store, service, logging);
+    });
+    HttpServer server(config.http, api, log, metrics);
+    announce(config, server.listen());
+    log_event(
+        *log,
+        level::info,
+        "started",
+        {{"version", version()}, {"data", config.data_directory}, {"workers", config.jobs.workers}}
+    );
+    ServerHooks hooks;
+    hooks.on_signal = [&service] { service.refuse_work(); };
+    hooks.finish_work = [&service, &config] { service.drain(config.drain_timeout); };
+    hooks.on_hangup = [&admission, &log] {
         if (const auto loaded = admission.load_keys(); loaded) {
-            log->info("configuration read again");
+            log_event(*log, level::info, "keys read again", {});
         } else {
-            log->error("the keys stay as they were why=\"{}\"", loaded.error());
+            log_event(*log, level::err, "the keys stay as they were", {{"why", loaded.error()}});
         }
     };
-    server.run([&service] { service.drain(); }, reload);
-    log->info("stopped");
+    server.run(hooks);
+    log_event(*log, level::info, "stopped", {});
     return 0;
 }
 
@@ -63,7 +98,6 @@ int main(int argc, char** argv) {
     try {
         return serve(*config);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "modelsynthd: %s\n", error.what());
-        return 1;
+        return refuse_to_start(error.what());
     }
 }

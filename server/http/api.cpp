@@ -23,18 +23,18 @@ enum class BodyKind : std::uint8_t { kOther, kJob, kUpload };
 
 struct Route {
     const char* method;
-    const char* path;  // segments, {} stands for an id
+    const char* path;  // segments, {id} stands for an id
     Handler handler;
     BodyKind body = BodyKind::kOther;
 };
 
 // Health, and what there is to read before one has a key.
 constexpr std::array<const char*, 7> kOpen = {
-    "/healthz", "/readyz", "/problems/{}", "/openapi.json", "/asyncapi.json", "/docs", "/"};
+    "/healthz", "/readyz", "/problems/{id}", "/openapi.json", "/asyncapi.json", "/docs", "/"};
 
 // What a browser opens without being able to send a key.
 constexpr std::array<const char*, 3> kStreams = {
-    "/v1/jobs/{}/events", "/v1/jobs/{}/stream", "/v1/stream"};
+    "/v1/jobs/{id}/events", "/v1/jobs/{id}/stream", "/v1/stream"};
 
 template <std::size_t N>
 bool is_among(const std::array<const char*, N>& paths, std::string_view path) {
@@ -50,37 +50,41 @@ Need need_of(const Route& route) {
     if (!is_among(kOpen, route.path)) {
         const bool only_reads = is_get || std::string_view(route.path) == "/v1/tickets";
         need.scope = only_reads ? proto::Scope::kRead : proto::Scope::kSubmit;
+        if (std::string_view(route.path) == "/metrics") {
+            need.scope = proto::Scope::kAdmin;  // it tells of everybody's jobs
+        }
     }
     return need;
 }
 
-constexpr std::array<Route, 31> kRoutes = {
+constexpr std::array<Route, 32> kRoutes = {
     {{"POST", "/v1/jobs", submit_job, BodyKind::kJob},
      {"GET", "/v1/jobs", list_jobs},
-     {"GET", "/v1/jobs/{}", get_job},
-     {"DELETE", "/v1/jobs/{}", delete_job},
-     {"POST", "/v1/jobs/{}/cancel", cancel_job},
-     {"GET", "/v1/jobs/{}/model.glb", get_model},
-     {"GET", "/v1/jobs/{}/preview.glb", get_preview},
-     {"GET", "/v1/jobs/{}/labels.json", get_labels},
-     {"GET", "/v1/jobs/{}/events", get_events},
-     {"GET", "/v1/jobs/{}/stream", get_stream},
+     {"GET", "/v1/jobs/{id}", get_job},
+     {"DELETE", "/v1/jobs/{id}", delete_job},
+     {"POST", "/v1/jobs/{id}/cancel", cancel_job},
+     {"GET", "/v1/jobs/{id}/model.glb", get_model},
+     {"GET", "/v1/jobs/{id}/preview.glb", get_preview},
+     {"GET", "/v1/jobs/{id}/labels.json", get_labels},
+     {"GET", "/v1/jobs/{id}/events", get_events},
+     {"GET", "/v1/jobs/{id}/stream", get_stream},
      {"GET", "/v1/stream", get_shared_stream},
      {"GET", "/v1/examples", list_examples},
      {"POST", "/v1/examples", upload_example, BodyKind::kUpload},
-     {"GET", "/v1/examples/{}", get_example},
-     {"DELETE", "/v1/examples/{}", delete_example},
-     {"GET", "/v1/examples/{}/model.glb", get_example_model},
-     {"GET", "/v1/examples/{}/pieces.glb", get_example_pieces},
-     {"GET", "/v1/examples/{}/analysis", get_example_analysis},
-     {"GET", "/v1/examples/{}/success.svg", get_example_success},
-     {"GET", "/v1/examples/{}/figures.svg", get_example_figures},
+     {"GET", "/v1/examples/{id}", get_example},
+     {"DELETE", "/v1/examples/{id}", delete_example},
+     {"GET", "/v1/examples/{id}/model.glb", get_example_model},
+     {"GET", "/v1/examples/{id}/pieces.glb", get_example_pieces},
+     {"GET", "/v1/examples/{id}/analysis", get_example_analysis},
+     {"GET", "/v1/examples/{id}/success.svg", get_example_success},
+     {"GET", "/v1/examples/{id}/figures.svg", get_example_figures},
      {"GET", "/v1/solvers", list_solvers},
-     {"GET", "/v1/solvers/{}", get_solver},
+     {"GET", "/v1/solvers/{id}", get_solver},
      {"POST", "/v1/tickets", give_ticket},
      {"GET", "/healthz", healthz},
      {"GET", "/readyz", readyz},
-     {"GET", "/problems/{}", get_problem},
+     {"GET", "/metrics", get_metrics},
+     {"GET", "/problems/{id}", get_problem},
      {"GET", "/v1/limits", get_limits},
      {"GET", "/openapi.json", get_openapi},
      {"GET", "/asyncapi.json", get_asyncapi},
@@ -100,7 +104,7 @@ bool matches(const char* route, const std::vector<std::string>& path, std::strin
         }
         rest.remove_prefix(1);
         const std::string_view wanted = rest.substr(0, rest.find('/'));
-        if (wanted == "{}" && !segment.empty()) {
+        if (wanted == "{id}" && !segment.empty()) {
             found = segment;
         } else if (wanted != segment) {
             return false;
@@ -177,6 +181,8 @@ std::optional<Response> Api::check_head(Request& request) {
         response.headers.emplace_back("Allow", match.allow);
         return response;
     }
+    request.route = match.route->path;
+    request.resource_id = match.id;
     if (auto refusal = admission_.admit(request, need_of(*match.route))) {
         return refusal;
     }
@@ -213,13 +219,14 @@ Response Api::handle(const Request& request) {
     Match match = find_route(request);
     // Of what belongs to another key nobody learns more than of what is not there.
     if (!request.caller.sees_all &&
-        std::string_view(match.route->path).starts_with("/v1/jobs/{}")) {
+        std::string_view(match.route->path).starts_with("/v1/jobs/{id}")) {
         if (const auto job = service_.find(match.id, request.caller); !job) {
             return problem_response(job.error(), request);
         }
     }
-    Response response =
-        match.route->handler({service_, admission_, request, std::move(match.id), documents_});
+    Response response = match.route->handler(
+        {service_, admission_, metrics_, request, std::move(match.id), documents_}
+    );
     if (!response.wait) {
         code_body(request, response);
     }

@@ -6,6 +6,7 @@
 #include "server/jobs/job_service.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@ struct HttpLimits {
     std::uint32_t write_seconds = 30;
     std::uint32_t requests_per_connection_max = 10'000;
     std::size_t connections_max = 4096;
+    std::size_t connections_per_address_max = 0;  // 0: no limit
     // Streams: a WebSocket is pinged after half of this silence and closed after the whole, a
     // comment is sent on an event stream after a quarter.
     std::uint32_t stream_idle_seconds = 60;
@@ -37,11 +39,17 @@ struct HttpLimits {
 // block. Thread-safe.
 class Api {
   public:
-    Api(JobService& service, Admission& admission, const HttpLimits& limits, Documents documents)
+    // `metrics`: what GET /metrics answers with.
+    Api(JobService& service,
+        Admission& admission,
+        const HttpLimits& limits,
+        Documents documents,
+        std::function<std::string()> metrics)
         : service_(service),
           admission_(admission),
           limits_(limits),
-          documents_(std::move(documents)) {}
+          documents_(std::move(documents)),
+          metrics_(std::move(metrics)) {}
 
     // What can be refused before the body is read: unknown paths, wrong methods, callers who may
     // not ask, bodies that are too long or of another type. Nothing when the body is wanted; then
@@ -65,6 +73,7 @@ class Api {
     Admission& admission_;
     HttpLimits limits_;
     Documents documents_;
+    std::function<std::string()> metrics_;
 };
 
 }  // namespace modelsynth::server

@@ -1,7 +1,10 @@
 #include "server/http/connection.h"
 
 #include "proto/problem.h"
+#include "server/http/access_log.h"
+#include "server/http/correlation.h"
 #include "server/http/head_check.h"
+#include "server/log/event_line.h"
 #include "server/stream/event_cursor.h"
 #include "server/stream/event_stream.h"
 #include "server/stream/on_pool.h"
@@ -47,12 +50,38 @@ struct Exchange {
     unsigned version = 11;
     bool keep_alive = true;
     bool chunked = false;
+    AnswerRecord answer;
+};
+
+// Tells the observer that there is one more of something, as long as it lives.
+class Notice {
+  public:
+    Notice(HttpObserver& observer, void (HttpObserver::*tell)(int))
+        : observer_(observer), tell_(tell) {
+        (observer_.*tell_)(1);
+    }
+
+    Notice(const Notice&) = delete;
+    Notice& operator=(const Notice&) = delete;
+
+    ~Notice() { (observer_.*tell_)(-1); }
+
+  private:
+    HttpObserver& observer_;
+    void (HttpObserver::*tell_)(int);
 };
 
 class Connection {
   public:
-    Connection(net::ip::tcp::socket socket, const ConnectionContext& context)
-        : stream_(std::move(socket)), timer_(stream_.get_executor()), context_(context) {
+    Connection(
+        net::ip::tcp::socket socket,
+        const OpenConnections::Place& place,
+        const ConnectionContext& context
+    )
+        : stream_(std::move(socket)),
+          timer_(stream_.get_executor()),
+          place_(place),
+          context_(context) {
         buffer_.max_size(context.limits.head_bytes_max + kReadAhead);
         stream_.expires_never();
     }
@@ -60,11 +89,13 @@ class Connection {
     net::awaitable<void> serve() {
         ErrorCode ignored;
         stream_.socket().set_option(net::ip::tcp::no_delay(true), ignored);
-        if (context_.counters->open > context_.limits.connections_max) {
+        if (const char* reason = refusal_reason()) {
+            context_.observer->on_connection_refused(reason);
             const Response busy = problem_response(
                 proto::make_problem("unavailable", "too many connections are open"), {}
             );
             Exchange exchange;
+            exchange.request.id = make_request_id();
             exchange.keep_alive = false;
             co_await write_whole(busy, exchange);
             co_return;
@@ -81,9 +112,29 @@ class Connection {
   private:
     static constexpr std::size_t kReadAhead = 64 * 1024;
 
+    // Why there is no room for this connection, or null.
+    [[nodiscard]] const char* refusal_reason() const {
+        if (place_.count() > context_.limits.connections_max) {
+            return "connections";
+        }
+        const std::size_t of_address_max = context_.limits.connections_per_address_max;
+        return of_address_max > 0 && place_.count_of_address() > of_address_max
+                   ? "connections-of-address"
+                   : nullptr;
+    }
+
     // Serves one request; false when the connection is done with.
     net::awaitable<bool> serve_one() {
         Exchange exchange;
+        exchange.request.id = make_request_id();
+        const bool goes_on = co_await answer_one(exchange);
+        if (exchange.answer.status != 0) {
+            report_answer(exchange.request, exchange.answer, context_);
+        }
+        co_return goes_on;
+    }
+
+    net::awaitable<bool> answer_one(Exchange& exchange) {
         Parser parser;
         auto refusal = co_await read_head(parser, exchange);
         if (closed_) {
@@ -107,6 +158,7 @@ class Connection {
         }
         auto handle = [this, &exchange] { return context_.api->handle(exchange.request); };
         Response response = co_await on_pool(*context_.pool, handle);
+        exchange.answer.job_id = response.job_id;
         if (response.wait) {
             const bool left = co_await wait_for_job(*response.wait);
             if (left && response.wait->cancel_when_left) {
@@ -137,7 +189,9 @@ class Connection {
                 co_return std::nullopt;
             }
         }
-        const auto until = Clock::now() + std::chrono::seconds(context_.limits.head_seconds);
+        exchange.answer.begun = Clock::now();
+        const auto until =
+            exchange.answer.begun + std::chrono::seconds(context_.limits.head_seconds);
         ErrorCode error;
         std::size_t head_end = find_head_end();
         while (head_end == std::string_view::npos && !error) {
@@ -258,6 +312,7 @@ class Connection {
             });
             exchange.request.headers.emplace_back(std::move(name), std::string(field.value()));
         }
+        take_correlation(exchange.request);
         if (exchange.request.headers.size() > context_.limits.fields_max) {
             return too_many_fields(exchange);
         }
@@ -329,7 +384,12 @@ class Connection {
         auto work = [this, &job_id] { return context_.api->service().cancel(job_id); };
         const auto cancelled = co_await on_pool(*context_.pool, work);
         if (cancelled) {
-            context_.log->info("its client left job={}", job_id);
+            log_event(
+                *context_.log,
+                spdlog::level::info,
+                "job cancelled as its client left",
+                {{"job", job_id}}
+            );
         }
     }
 
@@ -375,14 +435,19 @@ class Connection {
     net::awaitable<bool> respond(Response response, Exchange& exchange, Parser& parser) {
         if (auto* upgrade = std::get_if<SocketUpgrade>(&response.body)) {
             handed_over_ = true;
+            exchange.answer.status = response.status;
+            exchange.answer.is_stream = true;
+            auto handshake = parser.release();
+            handshake.set("X-Request-Id", exchange.request.id);  // as the answer tells it
+            const Notice notice(*context_.observer, &HttpObserver::on_websockets);
             if (upgrade->job) {
                 auto session = serve_job_socket(
-                    std::move(stream_), parser.release(), std::move(*upgrade->job), context_
+                    std::move(stream_), std::move(handshake), std::move(*upgrade->job), context_
                 );
                 co_await std::move(session);
             } else {
                 auto session = serve_shared_socket(
-                    std::move(stream_), parser.release(), std::move(*upgrade), context_
+                    std::move(stream_), std::move(handshake), std::move(*upgrade), context_
                 );
                 co_await std::move(session);
             }
@@ -393,7 +458,7 @@ class Connection {
             co_return false;
         }
         exchange.keep_alive =
-            exchange.keep_alive && !response.close && !context_.counters->draining;
+            exchange.keep_alive && !response.close && !context_.counters->stopping;
         if (std::holds_alternative<FileBody>(response.body)) {
             co_return co_await write_file(response, exchange) && exchange.keep_alive;
         }
@@ -401,13 +466,16 @@ class Connection {
     }
 
     static std::string head_text(
-        const Response& response, const Exchange& exchange, std::optional<std::uint64_t> length
+        const Response& response, Exchange& exchange, std::optional<std::uint64_t> length
     ) {
+        exchange.answer.status = response.status;
+        exchange.answer.problem = response.problem;
         std::string text =
             "HTTP/1.1 " + std::to_string(response.status) + " " +
             std::string(http::obsolete_reason(static_cast<http::status>(response.status))) + "\r\n";
         std::string vary;
-        for (const Fields* fields : {&response.headers, &exchange.request.answer_fields}) {
+        const Fields& answer_fields = exchange.request.answer_fields;
+        for (const Fields* fields : {&response.headers, &answer_fields}) {
             for (const auto& [name, value] : *fields) {
                 if (name == "Vary") {
                     vary += (vary.empty() ? "" : ", ") + value;
@@ -417,7 +485,8 @@ class Connection {
             }
         }
         text += vary.empty() ? "" : "Vary: " + vary + "\r\n";
-        text += "Server: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
+        text += "X-Request-Id: " + exchange.request.id +
+                "\r\nServer: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
         if (length) {
             text += "Content-Length: " + std::to_string(*length) + "\r\n";
         }
@@ -429,15 +498,16 @@ class Connection {
         return text + "\r\n";
     }
 
-    net::awaitable<bool> write_bytes(std::string_view bytes) {
+    net::awaitable<bool> write_bytes(std::string_view bytes, Exchange& exchange) {
         stream_.expires_after(std::chrono::seconds(context_.limits.write_seconds));
         auto buffer = net::buffer(bytes.data(), bytes.size());
         auto [error, count] = co_await net::async_write(stream_, buffer, kToken);
+        exchange.answer.bytes += count;
         closed_ = closed_ || error;
         co_return !error;
     }
 
-    net::awaitable<bool> write_whole(const Response& response, const Exchange& exchange) {
+    net::awaitable<bool> write_whole(const Response& response, Exchange& exchange) {
         const auto& body = std::get<std::string>(response.body);
         // 204 and 304 have no content, not even an empty one.
         const bool has_content = response.status != 204 && response.status != 304;
@@ -446,14 +516,14 @@ class Connection {
         if (has_content && exchange.request.method != "HEAD") {
             text += body;
         }
-        co_return co_await write_bytes(text);
+        co_return co_await write_bytes(text, exchange);
     }
 
-    net::awaitable<bool> write_file(const Response& response, const Exchange& exchange) {
+    net::awaitable<bool> write_file(const Response& response, Exchange& exchange) {
         constexpr std::uint64_t kPiece = 256 * 1024;
         FileBody body = std::get<FileBody>(response.body);
         const std::string head = head_text(response, exchange, body.length);
-        if (!co_await write_bytes(head) || exchange.request.method == "HEAD") {
+        if (!co_await write_bytes(head, exchange) || exchange.request.method == "HEAD") {
             co_return !closed_;
         }
         std::string piece;
@@ -461,7 +531,7 @@ class Connection {
             piece.resize(std::min(kPiece, body.length));
             auto read = [&body, &piece] { return body.reader->read(body.offset, piece); };
             const auto got = co_await on_pool(*context_.pool, read);
-            if (!got || !co_await write_bytes(piece)) {
+            if (!got || !co_await write_bytes(piece, exchange)) {
                 closed_ = true;  // a length was promised that cannot be kept
                 co_return false;
             }
@@ -472,19 +542,19 @@ class Connection {
     }
 
     // Text as a chunk, or as it is for HTTP/1.0, whose stream ends with the connection.
-    net::awaitable<bool> write_chunk(std::string text, const Exchange& exchange) {
+    net::awaitable<bool> write_chunk(std::string text, Exchange& exchange) {
         if (exchange.version >= 11) {
             std::array<char, 20> size = {};
             const int digits = std::snprintf(size.data(), size.size(), "%zx\r\n", text.size());
             text = std::string(size.data(), static_cast<std::size_t>(digits)) + text + "\r\n";
         }
-        co_return co_await write_bytes(text);
+        co_return co_await write_bytes(text, exchange);
     }
 
     // The connection as the place where an event stream goes.
     class Sink final : public EventSink {
       public:
-        Sink(Connection& connection, const Exchange& exchange)
+        Sink(Connection& connection, Exchange& exchange)
             : connection_(connection), exchange_(exchange) {}
 
         net::awaitable<bool> write(std::string text) override {
@@ -498,13 +568,14 @@ class Connection {
 
       private:
         Connection& connection_;
-        const Exchange& exchange_;
+        Exchange& exchange_;
     };
 
     net::awaitable<void> write_events(
         Response& response, const EventStreamBody& body, Exchange& exchange
     ) {
         exchange.keep_alive = false;
+        exchange.answer.is_stream = true;
         if (exchange.version >= 11) {
             response.headers.emplace_back("Transfer-Encoding", "chunked");
         }
@@ -513,7 +584,7 @@ class Connection {
             net::socket_base::send_buffer_size(context_.limits.stream_send_buffer_bytes), ignored
         );
         const std::string head = head_text(response, exchange, std::nullopt);
-        const bool open = co_await write_bytes(head);
+        const bool open = co_await write_bytes(head, exchange);
         if (exchange.request.method == "HEAD") {
             co_return;
         }
@@ -523,11 +594,12 @@ class Connection {
             &context_.api->service(),
             context_.pool,
             &context_.counters->draining,
-            std::chrono::seconds(context_.limits.stream_idle_seconds) / 4};
+            std::chrono::seconds(context_.limits.stream_idle_seconds) / 4,
+            context_.observer};
         const bool ended = open && co_await write_event_stream(sink, cursor, context);
         if (ended && exchange.version >= 11) {
             static constexpr std::string_view kLastChunk = "0\r\n\r\n";
-            co_await write_bytes(kLastChunk);
+            co_await write_bytes(kLastChunk, exchange);
         }
         if (!ended && body.cancel_when_left) {
             co_await cancel(body.job_id);
@@ -558,31 +630,21 @@ class Connection {
 
     beast::tcp_stream stream_;
     net::steady_timer timer_;
+    const OpenConnections::Place& place_;
     const ConnectionContext& context_;
     beast::flat_buffer buffer_;
     bool closed_ = false;       // nobody reads any more
     bool handed_over_ = false;  // the stream is a WebSocket's
 };
 
-// Counts the connection as long as it is open.
-class OpenCount {
-  public:
-    explicit OpenCount(std::atomic<std::size_t>& count) : count_(count) { ++count_; }
-
-    OpenCount(const OpenCount&) = delete;
-    OpenCount& operator=(const OpenCount&) = delete;
-
-    ~OpenCount() { --count_; }
-
-  private:
-    std::atomic<std::size_t>& count_;
-};
-
 }  // namespace
 
 net::awaitable<void> serve_connection(net::ip::tcp::socket socket, ConnectionContext context) {
-    const OpenCount count(context.counters->open);
-    Connection connection(std::move(socket), context);
+    ErrorCode error;
+    const auto peer = socket.remote_endpoint(error);  // fails when the client has gone already
+    const OpenConnections::Place place(context.counters->open, peer.address());
+    const Notice notice(*context.observer, &HttpObserver::on_connections);
+    Connection connection(std::move(socket), place, context);
     co_await connection.serve();
 }
 

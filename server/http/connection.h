@@ -1,6 +1,8 @@
 #pragma once
 
 #include "server/http/api.h"
+#include "server/http/http_observer.h"
+#include "server/http/open_connections.h"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -8,7 +10,6 @@
 #include <spdlog/logger.h>
 
 #include <atomic>
-#include <cstddef>
 #include <memory>
 
 namespace modelsynth::server {
@@ -17,8 +18,9 @@ class FrameSource;
 
 // What all connections share.
 struct ConnectionCounters {
-    std::atomic<std::size_t> open = 0;
-    std::atomic<bool> draining = false;
+    OpenConnections open;
+    std::atomic<bool> stopping = false;  // connections are closed after their next answer
+    std::atomic<bool> draining = false;  // ... and streams once they have told what there is
 };
 
 // Everything pointed to outlives all connections.
@@ -29,6 +31,7 @@ struct ConnectionContext {
     FrameSource* frames;
     HttpLimits limits;
     std::shared_ptr<spdlog::logger> log;
+    HttpObserver* observer;
 };
 
 // Serves one connection to its end: requests one after the other, or a stream. Runs on the

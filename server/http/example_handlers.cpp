@@ -53,6 +53,9 @@ Response list_examples(const Call& call) {
 }
 
 Response upload_example(const Call& call) {
+    if (const auto room = call.service.check_room(); !room) {
+        return refuse(call, room.error());
+    }
     const auto form = media_type(call.request) == "model/gltf-binary" ? ExampleLibrary::Form::kGlb
                                                                       : ExampleLibrary::Form::kJson;
     const auto entry = call.service.examples().upload(call.request.body, form, call.request.caller);

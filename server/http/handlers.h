@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 // A function per method and resource of the contract. All may block; all are thread-safe.
@@ -24,6 +25,7 @@ inline constexpr std::uint32_t kCancelWaitSecondsMax = 1;
 struct Call {
     JobService& service;
     Admission& admission;
+    const std::function<std::string()>& metrics;
     const Request& request;
     std::string id;  // the {id} of the path, if it has one
     const Documents& documents;
@@ -65,6 +67,7 @@ struct Call {
 [[nodiscard]] Response give_ticket(const Call& call);
 [[nodiscard]] Response healthz(const Call& call);
 [[nodiscard]] Response readyz(const Call& call);
+[[nodiscard]] Response get_metrics(const Call& call);
 [[nodiscard]] Response get_problem(const Call& call);
 [[nodiscard]] Response get_limits(const Call& call);
 [[nodiscard]] Response get_openapi(const Call& call);

@@ -20,7 +20,8 @@ Response submit_job(const Call& call) {
     if (!key) {
         return refuse(call, key.error());
     }
-    const auto submitted = call.service.submit(call.request.body, *key, call.request.caller, "");
+    const auto submitted =
+        call.service.submit(call.request.body, *key, call.request.caller, call.request.traceparent);
     if (!submitted) {
         return refuse(call, submitted.error());
     }
@@ -30,6 +31,7 @@ Response submit_job(const Call& call) {
     Response response = as_events ? event_stream_response({submitted->job.id, 0, cancel_when_left})
                                   : json_response(202, proto::to_json(submitted->job));
     response.headers.emplace_back("Location", "/v1/jobs/" + submitted->job.id);
+    response.job_id = submitted->job.id;
     if (submitted->replayed) {
         response.headers.emplace_back("Idempotent-Replayed", "true");
     }

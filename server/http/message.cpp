@@ -74,6 +74,9 @@ Response problem_response(const proto::Problem& problem, const Request& request)
     if (problem.status == 503 || problem.status == 429) {
         response.headers.emplace_back("Retry-After", "2");
     }
+    if (const std::size_t slash = problem.type.rfind('/'); slash != std::string::npos) {
+        response.problem = problem.type.substr(slash + 1);
+    }
     return response;
 }
 

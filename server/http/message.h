@@ -29,6 +29,10 @@ struct Request {
     Fields headers;
     std::string body;
     std::uint64_t content_length = 0;
+    std::string id;                   // the client's own or ours, see correlation.h
+    std::string traceparent;          // empty: none
+    std::string_view route = "none";  // the template of its path, once it is known
+    std::string resource_id;          // what stands for {id} in that
     Caller caller;
     std::shared_ptr<const proto::KeyEntry> key;  // that the request came with; null: none
     Fields answer_fields;                        // what every answer to it tells besides
@@ -85,7 +89,9 @@ struct Response {
     Fields headers;
     std::variant<std::string, FileBody, EventStreamBody, SocketUpgrade> body = std::string();
     std::optional<WaitForJob> wait = {};
-    bool close = false;  // the connection cannot be used any more
+    bool close = false;        // the connection cannot be used any more
+    std::string job_id = {};   // that was made by the request
+    std::string problem = {};  // the name of the problem that this is; empty: none
 };
 
 [[nodiscard]] Response json_response(int status, std::string body);

@@ -1,6 +1,7 @@
 #include "server/http/server.h"
 
 #include "server/http/connection.h"
+#include "server/log/event_line.h"
 #include "server/stream/frame_source.h"
 
 #include <boost/asio/as_tuple.hpp>
@@ -27,10 +28,16 @@ namespace net = boost::asio;
 using net::ip::tcp;
 
 struct HttpServer::State {
-    State(const HttpConfig& given, Api& given_api, std::shared_ptr<spdlog::logger> logger)
+    State(
+        const HttpConfig& given,
+        Api& given_api,
+        std::shared_ptr<spdlog::logger> logger,
+        HttpObserver& given_observer
+    )
         : config(given),
           api(given_api),
           log(std::move(logger)),
+          observer(given_observer),
           acceptor(io),
           signals(io),
           hangups(io, SIGHUP),
@@ -40,11 +47,12 @@ struct HttpServer::State {
     HttpConfig config;
     Api& api;
     std::shared_ptr<spdlog::logger> log;
+    HttpObserver& observer;
+    ConnectionCounters counters;  // connections that are left go with the next one
     net::io_context io;
     tcp::acceptor acceptor;
     net::signal_set signals;
     net::signal_set hangups;
-    ConnectionCounters counters;
     FrameSource frames;
     net::thread_pool pool;  // last: its threads are joined while the rest still stands
 };
@@ -58,7 +66,7 @@ void log_failure(const std::shared_ptr<spdlog::logger>& log, const std::exceptio
     try {
         std::rethrow_exception(failure);
     } catch (const std::exception& error) {
-        log->debug("connection ended what=\"{}\"", error.what());
+        log_event(*log, spdlog::level::debug, "connection ended", {{"what", error.what()}});
     }
 }
 
@@ -78,7 +86,7 @@ net::awaitable<void> accept_connections(
         }
         if (error) {
             // Out of descriptors, mostly: accepting again at once would only burn the processor.
-            log->warn("accepting failed why=\"{}\"", error.message());
+            log_event(*log, spdlog::level::warn, "accepting failed", {{"why", error.message()}});
             pause.expires_after(std::chrono::milliseconds(100));
             co_await pause.async_wait(kToken);
             continue;
@@ -102,8 +110,10 @@ net::awaitable<void> await_hangups(net::signal_set& hangups, const std::function
 
 }  // namespace
 
-HttpServer::HttpServer(const HttpConfig& config, Api& api, std::shared_ptr<spdlog::logger> log)
-    : state_(std::make_unique<State>(config, api, std::move(log))) {}
+HttpServer::HttpServer(
+    const HttpConfig& config, Api& api, std::shared_ptr<spdlog::logger> log, HttpObserver& observer
+)
+    : state_(std::make_unique<State>(config, api, std::move(log), observer)) {}
 
 HttpServer::~HttpServer() {
     state_->io.stop();
@@ -121,18 +131,18 @@ std::uint16_t HttpServer::listen() {
     return state_->acceptor.local_endpoint().port();
 }
 
-void HttpServer::run(
-    const std::function<void()>& on_signal, const std::function<void()>& on_hangup
-) {
+void HttpServer::run(const ServerHooks& hooks) {
     State& state = *state_;
     state.signals.add(SIGTERM);
     state.signals.add(SIGINT);
     std::thread drainer;
-    state.signals.async_wait([&](boost::system::error_code error, int) {
+    state.signals.async_wait([&](boost::system::error_code error, int signal) {
         if (error) {
             return;
         }
-        state.counters.draining = true;
+        log_event(*state.log, spdlog::level::info, "draining", {{"signal", signal}});
+        state.counters.stopping = true;
+        hooks.on_signal();
         // A second signal does not wait for anything.
         state.signals.async_wait([](boost::system::error_code again, int) {
             if (!again) {
@@ -140,23 +150,32 @@ void HttpServer::run(
             }
         });
         drainer = std::thread([&] {
-            on_signal();
+            std::this_thread::sleep_for(std::chrono::seconds(state.config.drain_delay_seconds));
+            hooks.finish_work();
+            state.counters.draining = true;
             // What streams notice within their next wait, and a little more.
-            for (int i = 0; i < 30 && state.counters.open > 0; ++i) {
+            for (int i = 0; i < 30 && state.counters.open.count() > 0; ++i) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
             }
             stop();
         });
     });
     const ConnectionContext context = {
-        &state.api, &state.pool, &state.counters, &state.frames, state.config.limits, state.log};
+        &state.api,
+        &state.pool,
+        &state.counters,
+        &state.frames,
+        state.config.limits,
+        state.log,
+        &state.observer};
     net::co_spawn(
         state.io,
         accept_connections(state.acceptor, state.io, context, state.log),
         [](const std::exception_ptr&) {}
     );
-    net::co_spawn(state.io, await_hangups(state.hangups, on_hangup), [](const std::exception_ptr&) {
-    });
+    net::co_spawn(
+        state.io, await_hangups(state.hangups, hooks.on_hangup), [](const std::exception_ptr&) {}
+    );
     std::vector<std::thread> threads;
     const auto serve = [&state] {
         for (;;) {
@@ -164,7 +183,9 @@ void HttpServer::run(
                 state.io.run();
                 return;
             } catch (const std::exception& error) {
-                state.log->error("a handler threw what=\"{}\"", error.what());
+                log_event(
+                    *state.log, spdlog::level::err, "a handler threw", {{"what", error.what()}}
+                );
             }
         }
     };

@@ -44,14 +44,18 @@ Response give_ticket(const Call& call) {
 Response healthz(const Call& /*call*/) { return json_response(200, R"({"status":"alive"})"); }
 
 Response readyz(const Call& call) {
-    if (call.service.is_ready()) {
-        return json_response(200, R"({"status":"ready"})");
+    if (const auto ready = call.service.check_ready(); !ready) {
+        return refuse(call, ready.error());
     }
-    return refuse(
-        call,
-        call.service.is_draining() ? make_problem("draining", "the server is stopping")
-                                   : make_problem("queue-full", "no work is taken right now")
-    );
+    return json_response(200, R"({"status":"ready"})");
+}
+
+Response get_metrics(const Call& call) {
+    return {
+        200,
+        {{"Content-Type", "text/plain; version=0.0.4; charset=utf-8"},
+         {"Cache-Control", "no-store"}},
+        call.metrics()};
 }
 
 Response get_problem(const Call& call) {

@@ -80,7 +80,8 @@ JobService::JobService(
     EventLog& events,
     ExampleStore& examples,
     ArtifactStore& artifacts,
-    std::shared_ptr<spdlog::logger> log
+    std::shared_ptr<spdlog::logger> log,
+    JobObserver& observer
 )
     : config_(config),
       jobs_(jobs),
@@ -88,13 +89,15 @@ JobService::JobService(
       artifacts_(artifacts),
       log_(std::move(log)),
       examples_(examples, artifacts, config_.limits, config.examples_max),
-      capacity_(capacity_of(config)) {
+      capacity_(capacity_of(config)),
+      observer_(observer) {
     for (std::size_t i = 0; i < config_.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
     }
+    housekeeper_ = std::jthread([this](const std::stop_token& stop) { keep_house(stop); });
 }
 
-JobService::~JobService() { drain(); }
+JobService::~JobService() { drain(std::chrono::seconds(0)); }
 
 void JobService::work(const std::stop_token& stop) {
     // A notification is a hint; what is queued is found by looking.
@@ -108,14 +111,14 @@ void JobService::work(const std::stop_token& stop) {
         running_,
         preparations_,
         config_.limits,
-        log_};
+        log_,
+        observer_};
     std::uint64_t seen = 0;
-    while (!stop.stop_requested()) {
+    while (!stop.stop_requested() && !draining_) {
         {
             const std::lock_guard lock(mutex_);
             seen = submissions_;
         }
-        expire_now_and_then();
         const auto claim = capacity_.claim(jobs_, proto::now_millis());
         if (claim && *claim) {
             // A job that is alone takes the workers that have nothing to do to help, as far as
@@ -125,20 +128,33 @@ void JobService::work(const std::stop_token& stop) {
             );
             run_claim(context, **claim, static_cast<std::uint32_t>(threads));
             capacity_.give_back(**claim);
+            const std::lock_guard lock(mutex_);
             --jobs_in_hand_;
+            let_go_.notify_all();
             continue;
         }
         std::unique_lock lock(mutex_);
-        queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen; });
+        queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen || draining_; });
     }
 }
 
-void JobService::expire_now_and_then() {
+void JobService::keep_house(const std::stop_token& stop) {
     constexpr proto::UnixMillis kInterval = 60'000;
-    const proto::UnixMillis now = proto::now_millis();
-    proto::UnixMillis last = last_expiry_;
-    if (now - last >= kInterval && last_expiry_.compare_exchange_strong(last, now)) {
-        jobs_.expire(now);
+    constexpr auto kPause = std::chrono::seconds(1);
+    proto::UnixMillis last = 0;
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+        const proto::UnixMillis now = proto::now_millis();
+        if (now - last >= kInterval) {
+            jobs_.expire(now);
+            jobs_.forget(now - config_.forget_after_expiry_ms);
+            last = now;
+        }
+        if (artifacts_.space().used_bytes > config_.artifact_bytes_max) {
+            jobs_.shed(config_.artifact_bytes_max, now);
+        }
+        housekeeping_.wait_for(lock, stop, kPause, [] { return false; });
     }
 }
 
@@ -166,6 +182,9 @@ Parsed<Submitted> JobService::submit(
     }
     if (draining_) {
         return tl::unexpected(make_problem("draining", "the server is stopping"));
+    }
+    if (auto room = check_room(); !room) {
+        return tl::unexpected(std::move(room.error()));
     }
     InheritedInputs inputs;
     auto request = proto::parse_job_request(
@@ -228,7 +247,11 @@ Parsed<Job> JobService::find(const std::string& id, const Caller& caller) {
 Parsed<JobPage> JobService::list(const JobQuery& query) { return parsed(jobs_.list(query)); }
 
 Parsed<Job> JobService::cancel(const std::string& id) {
+    const auto before = jobs_.find(id);
     auto job = jobs_.cancel(id, proto::now_millis());
+    if (before && before->state == JobState::kQueued && job && job->state == JobState::kCancelled) {
+        observer_.on_ended(job->solver, proto::state_name(job->state), 0);
+    }
     if (job && job->state == JobState::kRunning) {
         running_.stop(id, StopReason::kCancelled);
         // The worker may have let go between the two calls; then nobody would take this back.
@@ -511,16 +534,43 @@ Parsed<std::string> JobService::labels_json(
     return proto::labels_json(loaded->example, loaded->model);
 }
 
-bool JobService::is_ready() {
-    if (draining_) {
-        return false;
+Parsed<void> JobService::check_room() const {
+    if (artifacts_.space().free_bytes < config_.disk_free_bytes_min) {
+        return tl::unexpected(make_problem("unavailable", "the disk is nearly full"));
     }
-    const auto queued = jobs_.queued_count();
-    return queued && *queued < config_.queue_max;
+    return {};
 }
 
-void JobService::drain() {
+Parsed<void> JobService::check_ready() {
+    if (draining_) {
+        return tl::unexpected(make_problem("draining", "the server is stopping"));
+    }
+    if (auto room = check_room(); !room) {
+        return room;
+    }
+    const auto queued = jobs_.queued_count();
+    if (!queued) {
+        return tl::unexpected(problem_of(queued.error()));
+    }
+    const std::size_t most = config_.queue_max - 1;
+    queue_was_full_ = *queued > (queue_was_full_ ? most - most / 10 : most);
+    if (queue_was_full_) {
+        return tl::unexpected(make_problem("queue-full", "the queue is full"));
+    }
+    return {};
+}
+
+void JobService::refuse_work() {
     draining_ = true;
+    queued_.notify_all();
+}
+
+void JobService::drain(std::chrono::seconds most) {
+    refuse_work();
+    {
+        std::unique_lock lock(mutex_);
+        let_go_.wait_for(lock, most, [this] { return jobs_in_hand_ == 0; });
+    }
     analyses_.stop();
     for (std::jthread& worker : workers_) {
         worker.request_stop();
@@ -532,6 +582,10 @@ void JobService::drain() {
         if (worker.joinable()) {
             worker.join();
         }
+    }
+    housekeeper_.request_stop();
+    if (housekeeper_.joinable()) {
+        housekeeper_.join();
     }
 }
 

@@ -9,6 +9,7 @@
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_inputs.h"
+#include "server/jobs/job_observer.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
 #include "server/jobs/worker.h"
@@ -20,7 +21,10 @@
 #include <spdlog/logger.h>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -42,6 +46,9 @@ struct JobServiceConfig {
     // for those that are not.
     std::uint64_t large_choices = 20'000'000;
     proto::RequestLimits limits;
+    proto::UnixMillis forget_after_expiry_ms = proto::UnixMillis{21} * 24 * 3600 * 1000;
+    std::uint64_t artifact_bytes_max = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t disk_free_bytes_min = 0;  // with less no work is taken
 };
 
 // Everything that can be done with jobs and examples, without a word of HTTP. Owns the worker
@@ -55,9 +62,10 @@ class JobService {
         EventLog& events,
         ExampleStore& examples,
         ArtifactStore& artifacts,
-        std::shared_ptr<spdlog::logger> log
+        std::shared_ptr<spdlog::logger> log,
+        JobObserver& observer
     );
-    // Stops as drain() does.
+    // Stops as drain() does that waits for nothing.
     ~JobService();
 
     JobService(const JobService&) = delete;
@@ -121,14 +129,21 @@ class JobService {
 
     [[nodiscard]] ArtifactStore& artifacts() { return artifacts_; }
 
-    // Whether work is taken: 503 otherwise.
-    [[nodiscard]] bool is_ready();
+    // Whether work is taken. Fails: draining, unavailable as check_room(), queue-full: from when
+    // the queue is full until a tenth of it is free.
+    [[nodiscard]] proto::Parsed<void> check_ready();
 
-    // Takes no more work; running jobs stop at their next block and stay in the store. Returns
-    // when the workers have let go.
-    void drain();
+    // Whether there is room on the disk for more. Fails: unavailable.
+    [[nodiscard]] proto::Parsed<void> check_room() const;
 
-    [[nodiscard]] bool is_draining() const { return draining_; }
+    [[nodiscard]] std::size_t running_count() const { return jobs_in_hand_; }
+
+    // From now on no work is taken and no job begun. Does not block.
+    void refuse_work();
+
+    // Refuses work and lets running jobs go on for so long; those that have not ended by then stop
+    // at their next block and stay in the store. Returns when the workers have let go.
+    void drain(std::chrono::seconds most);
 
   private:
     struct LoadedModel {
@@ -137,8 +152,8 @@ class JobService {
     };
 
     void work(const std::stop_token& stop);
-    // Removes what has expired, once a minute whichever worker comes first.
-    void expire_now_and_then();
+    // Removes what is no longer kept.
+    void keep_house(const std::stop_token& stop);
     [[nodiscard]] proto::Parsed<LoadedModel> load_model(
         const proto::Job& job, const Stored<std::string>& encoded_labels
     );
@@ -181,12 +196,16 @@ class JobService {
     Capacity capacity_;
     Preparations preparations_;
     std::atomic<bool> draining_ = false;
-    std::atomic<proto::UnixMillis> last_expiry_ = 0;
+    std::atomic<bool> queue_was_full_ = false;
     std::mutex mutex_;
     std::condition_variable_any queued_;
     std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news
     std::atomic<std::size_t> jobs_in_hand_ = 0;
+    std::condition_variable let_go_;  // of a job in hand
+    JobObserver& observer_;
     std::vector<std::jthread> workers_;
+    std::condition_variable_any housekeeping_;
+    std::jthread housekeeper_;
 };
 
 }  // namespace modelsynth::server

@@ -87,7 +87,8 @@ LoggingObserver::LoggingObserver(
     std::function<void(StopReason)> stop,
     std::shared_ptr<LiveJob> live,
     const EarlierProgress& earlier,
-    const ModelInSeries& place
+    const ModelInSeries& place,
+    std::function<void(bool)> on_new_block
 )
     : jobs_(jobs),
       running_(running),
@@ -96,6 +97,7 @@ LoggingObserver::LoggingObserver(
       live_(std::move(live)),
       earlier_(earlier),
       place_(place),
+      on_new_block_(std::move(on_new_block)),
       blocks_done_(earlier.blocks_before()) {
     if (earlier_.checkpoint) {
         last_checkpoint_ = begun_;
@@ -164,6 +166,7 @@ void LoggingObserver::on_block(const BlockReport& report) {
         replay(earlier_.blocks[replayed], fields, std::move(patch));
         return;
     }
+    on_new_block_(report.accepted);
     std::vector<NewEvent> events;
     events.push_back({"block", std::move(fields), proto::now_millis()});
     append(

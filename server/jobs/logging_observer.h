@@ -72,7 +72,8 @@ class LoggingObserver final : public Observer {
         std::function<void(StopReason)> stop,
         std::shared_ptr<LiveJob> live,
         const EarlierProgress& earlier,
-        const ModelInSeries& place
+        const ModelInSeries& place,
+        std::function<void(bool accepted)> on_new_block
     );
 
     void on_warnings(std::span<const std::string> warnings) override;
@@ -133,6 +134,7 @@ class LoggingObserver final : public Observer {
     const EarlierProgress& earlier_;
     std::shared_ptr<Start> start_ = std::make_shared<Start>();
     const ModelInSeries place_;
+    std::function<void(bool)> on_new_block_;
     std::vector<std::string> warnings_;
     std::uint32_t blocks_total_ = 0;  // of the job
     std::uint32_t blocks_done_ = 0;

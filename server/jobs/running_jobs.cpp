@@ -61,6 +61,12 @@ void RunningJobs::stop_all(StopReason reason) {
     for (const auto& [id, entry] : entries_) {
         stop_entry(*entry, reason);
     }
+    changed_.notify_all();
+}
+
+bool RunningJobs::pause(std::chrono::milliseconds duration) {
+    std::unique_lock lock(mutex_);
+    return !changed_.wait_for(lock, duration, [this] { return stop_all_ != StopReason::kNone; });
 }
 
 void RunningJobs::settle(const std::string& id) {

@@ -57,6 +57,9 @@ class RunningJobs {
     // Stops every job in hand, and every one that is taken in hand later.
     void stop_all(StopReason reason);
 
+    // Waits, but not once everything is told to stop: then it answers no.
+    bool pause(std::chrono::milliseconds duration);
+
     // A claimed job has ended; requests to stop it are forgotten.
     void settle(const std::string& id);
 

@@ -6,6 +6,7 @@
 #include "server/jobs/job_inputs.h"
 #include "server/jobs/logging_observer.h"
 #include "server/jobs/store_problem.h"
+#include "server/log/event_line.h"
 #include "server/store/artifact_names.h"
 #include "solver/mesh/glb_writer.h"
 #include "solver/registry/alternatives.h"
@@ -22,6 +23,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+void report_end(const WorkerContext& context, const proto::Job& job, double seconds) {
+    const std::string_view state = proto::state_name(job.state);
+    context.observer.on_ended(job.solver, state, seconds);
+    log_event(
+        *context.log,
+        spdlog::level::info,
+        "job ended",
+        {{"job", job.id},
+         {"state", state},
+         {"solver", job.solver},
+         {"seconds", seconds},
+         {"blocks_done", job.blocks_done},
+         {"traceparent", job.traceparent}}
+    );
+}
+
 // One claim in hand.
 class ClaimRun {
   public:
@@ -32,6 +49,20 @@ class ClaimRun {
           running_(context.running, claim.lease.job_id) {}
 
     void run() {
+        const proto::Job& job = claim_.job;
+        if (claim_.solver_version.empty() && job.started) {
+            context_.observer.on_started(static_cast<double>(*job.started - job.created) / 1000);
+        }
+        log_event(
+            *context_.log,
+            spdlog::level::info,
+            "job started",
+            {{"job", job.id},
+             {"solver", job.solver},
+             {"threads", threads_},
+             {"blocks_done", job.blocks_done},
+             {"traceparent", job.traceparent}}
+        );
         if (claim_.fruitless_claims >= kFruitlessClaimsMax) {
             fail(proto::make_problem(
                 "crashed",
@@ -47,6 +78,7 @@ class ClaimRun {
                 auto entry =
                     find_example(context_.jobs, context_.examples, claim_.lease.job_id, id);
                 example_digest_ = entry ? entry->digest : "";
+                example_name_ = entry && entry->built_in ? id : "uploaded";
                 return entry ? std::optional(std::move(entry->example)) : std::nullopt;
             },
             nullptr,
@@ -192,7 +224,8 @@ class ClaimRun {
             [this](StopReason reason) { running_.request_stop(reason); },
             live_,
             earlier,
-            place};
+            place,
+            [this](bool accepted) { context_.observer.on_block(example_name_, accepted); }};
     }
 
     // A model of the task's seed, on disk, or why there is none; nothing when the job has ended
@@ -210,10 +243,13 @@ class ClaimRun {
         );
         const std::chrono::duration<double> solving = Clock::now() - begun;
         if (observer.diverged()) {
-            context_.log->error(
-                "resumed job differs from its log job={} version={}",
-                claim_.lease.job_id,
-                kSolverVersion
+            log_event(
+                *context_.log,
+                spdlog::level::err,
+                "resumed job differs from its log",
+                {{"job", claim_.lease.job_id},
+                 {"version", kSolverVersion},
+                 {"traceparent", claim_.job.traceparent}}
             );
             fail(proto::make_problem(
                 "internal", "solving the job again after a restart gave another model"
@@ -275,7 +311,7 @@ class ClaimRun {
         }
         switch (running_.reason()) {
             case StopReason::kDraining:
-                static_cast<void>(context_.jobs.release(claim_.lease, solved_seconds));
+                release(solved_seconds);
                 return;
             case StopReason::kDeadline:
                 end_unfinished(
@@ -289,7 +325,7 @@ class ClaimRun {
                 return;
             case StopReason::kLost:
                 // Erased, or the store cannot be written: then the next start takes it up again.
-                static_cast<void>(context_.jobs.release(claim_.lease, solved_seconds));
+                release(solved_seconds);
                 return;
             case StopReason::kCancelled:
             case StopReason::kNone:
@@ -336,20 +372,53 @@ class ClaimRun {
         outcome.finished = proto::now_millis();
         const auto job = context_.jobs.finish(claim_.lease, outcome);
         if (job) {
-            context_.log->info("job ended job={} state={}", job->id, proto::state_name(job->state));
+            report_end(context_, *job, seconds());
         } else if (job.error().code != StoreErrorCode::kLeaseLost) {
-            context_.log->error(
-                "job cannot be ended job={} why=\"{}\"", claim_.lease.job_id, job.error().message
+            log_event(
+                *context_.log,
+                spdlog::level::err,
+                "job cannot be ended",
+                {{"job", claim_.lease.job_id},
+                 {"why", job.error().message},
+                 {"traceparent", claim_.job.traceparent}}
             );
-            static_cast<void>(context_.jobs.release(claim_.lease, claim_.solved_seconds));
+            release(claim_.solved_seconds);
         }
+    }
+
+    // Gives the job back. While the disk is full, say, there is no use in other work either, so
+    // that is waited for; at the latest the next start of the server takes the job up.
+    void release(double solved_seconds) {
+        constexpr auto kPause = std::chrono::milliseconds(500);
+        auto released = context_.jobs.release(claim_.lease, solved_seconds);
+        while (!released && released.error().code == StoreErrorCode::kUnavailable &&
+               context_.running.pause(kPause)) {
+            released = context_.jobs.release(claim_.lease, solved_seconds);
+        }
+        const bool is_deleted = !released && released.error().code == StoreErrorCode::kLeaseLost;
+        log_event(
+            *context_.log,
+            released || is_deleted ? spdlog::level::info : spdlog::level::warn,
+            is_deleted ? "job deleted" : "job given back",
+            {{"job", claim_.lease.job_id},
+             {"seconds", seconds()},
+             {"why", released ? "" : released.error().message},
+             {"traceparent", claim_.job.traceparent}}
+        );
+    }
+
+    [[nodiscard]] double seconds() const {
+        const std::chrono::duration<double> own = Clock::now() - begun_;
+        return claim_.solved_seconds + own.count();
     }
 
     const WorkerContext& context_;
     const Claim& claim_;
     std::uint32_t threads_;
     RunningJobs::Entry running_;
-    std::string example_digest_;  // of an uploaded example's text
+    std::string example_digest_;           // of an uploaded example's text
+    std::string example_name_ = "inline";  // as the observer is told
+    Clock::time_point begun_ = Clock::now();
     std::shared_ptr<LiveJob> live_;
 };
 
@@ -359,14 +428,23 @@ void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t t
     try {
         ClaimRun(context, claim, threads).run();
     } catch (const std::exception& error) {
-        context.log->error("job threw job={} what=\"{}\"", claim.lease.job_id, error.what());
+        log_event(
+            *context.log,
+            spdlog::level::err,
+            "job threw",
+            {{"job", claim.lease.job_id},
+             {"what", error.what()},
+             {"traceparent", claim.job.traceparent}}
+        );
         Outcome outcome;
         outcome.state = proto::JobState::kFailed;
         outcome.error =
             proto::to_json(proto::make_problem("internal", "the job ran into a fault of the server")
             );
         outcome.finished = proto::now_millis();
-        static_cast<void>(context.jobs.finish(claim.lease, outcome));
+        if (const auto job = context.jobs.finish(claim.lease, outcome)) {
+            report_end(context, *job, claim.solved_seconds);
+        }
     }
     context.running.settle(claim.lease.job_id);
 }

@@ -2,6 +2,7 @@
 
 #include "proto/limits.h"
 #include "server/jobs/example_library.h"
+#include "server/jobs/job_observer.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
 #include "server/store/artifact_store.h"
@@ -31,6 +32,7 @@ struct WorkerContext {
     Preparations& preparations;
     const proto::RequestLimits& limits;
     std::shared_ptr<spdlog::logger> log;
+    JobObserver& observer;
 };
 
 // Runs one claimed job to its end, or until it is told to stop: solves, logs each block, keeps

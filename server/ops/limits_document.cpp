@@ -27,6 +27,12 @@ void append(std::vector<Limit>& limits, std::vector<Limit> more) {
 std::vector<Limit> limits_of_connections(const HttpLimits& http) {
     return {
         limit("connections_max", http.connections_max, "connections", "Open at once; 503 beyond."),
+        {"connections_per_address_max",
+         http.connections_per_address_max > 0
+             ? std::optional(static_cast<double>(http.connections_per_address_max))
+             : std::nullopt,
+         "connections",
+         "Open at once from one address; 503 beyond."},
         limit(
             "requests_per_connection_max",
             http.requests_per_connection_max,
@@ -222,7 +228,10 @@ std::vector<Limit> retention_times(const Config& config) {
          "seconds",
          "Models, previews and labels, from the end of their job; it tells when in expires. 410 "
          "then."},
-        {"job_seconds", std::nullopt, "seconds", "A job and its events: until it is deleted."},
+        {"job_seconds",
+         static_cast<double>(config.retention_ms + config.jobs.forget_after_expiry_ms) / 1000,
+         "seconds",
+         "A job and its events, from its end. 404 then."},
         {"idempotency_key_seconds",
          std::nullopt,
          "seconds",

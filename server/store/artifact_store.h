@@ -29,7 +29,15 @@ class ArtifactStore {
         [[nodiscard]] virtual const std::string& digest() const = 0;
     };
 
+    struct Space {
+        std::uint64_t used_bytes = 0;  // by artifacts
+        std::uint64_t free_bytes = 0;  // that may still be written where they are
+    };
+
     virtual ~ArtifactStore() = default;
+
+    // Cheap enough to ask for every request.
+    [[nodiscard]] virtual Space space() const = 0;
 
     // On disk when it returns; the same bytes twice are one file.
     [[nodiscard]] virtual Stored<std::unique_ptr<Pin>> put(std::string_view bytes) = 0;

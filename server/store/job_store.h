@@ -89,6 +89,13 @@ class JobStore {
 
     // Takes the artifacts and checkpoints of jobs that expired before `now`.
     virtual void expire(proto::UnixMillis now) = 0;
+
+    // Forgets ended jobs, with their events, that expired before `then`.
+    virtual void forget(proto::UnixMillis then) = 0;
+
+    // While artifacts take more than `bytes_max`, has ended jobs expire, those that would do so
+    // first before others. What others still need of theirs stays.
+    virtual void shed(std::uint64_t bytes_max, proto::UnixMillis now) = 0;
 };
 
 // Uploaded examples.

@@ -52,11 +52,15 @@ net::awaitable<bool> write_event_stream(
                 return snapshot_after(*context.service, cursor.job_id(), cursor.position());
             };
             if (const auto snapshot = co_await on_pool(*context.pool, make)) {
+                context.observer->on_events_dropped(
+                    "slow-reader", snapshot->seq - cursor.position()
+                );
                 cursor.move_to(snapshot->seq);
                 text = text_of(*snapshot);
                 continue;
             }
         }
+        const bool is_last_look = *context.draining;
         const auto batch = co_await cursor.next(kWait);
         for (const Event& event : batch.page.events) {
             text += text_of(event);
@@ -64,7 +68,7 @@ net::awaitable<bool> write_event_stream(
         if (text.empty() && Clock::now() - last_written > context.heartbeat) {
             text = kComment;
         }
-        last = batch.gone || batch.finished || *context.draining;
+        last = batch.gone || batch.finished || (is_last_look && batch.page.events.empty());
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/http_observer.h"
 #include "server/jobs/job_service.h"
 #include "server/stream/event_cursor.h"
 
@@ -30,6 +31,7 @@ struct EventStreamContext {
     net::thread_pool* pool;
     const std::atomic<bool>* draining;
     std::chrono::milliseconds heartbeat;  // a silence of this length is broken by a comment
+    HttpObserver* observer;
 };
 
 // A job's log as Server-Sent Events from the cursor on: an id, a type and the event's JSON each, a

@@ -115,6 +115,7 @@ net::awaitable<bool> JobFeed::write_event(const Event& event) {
     };
     auto frame = co_await on_pool(*context_.pool, make);
     if (!frame) {
+        context_.observer->on_events_dropped("frame-not-kept", 1);
         needs_whole_ = true;
         co_return co_await write_whole_of_block(event.seq);
     }
@@ -183,6 +184,7 @@ net::awaitable<bool> JobFeed::catch_up() {
     if (!snapshot) {
         co_return true;
     }
+    context_.observer->on_events_dropped("slow-reader", snapshot->seq - cursor_.position());
     cursor_.move_to(snapshot->seq);
     needs_whole_ = wanted_.partial != Partial::kNone;
     co_return co_await write_text(*snapshot);

@@ -40,16 +40,15 @@ net::awaitable<void> write_events(JobSession& session) {
     constexpr std::size_t kPage = 256;
     StreamSocket& socket = session.socket;
     while (socket.is_open()) {
-        if (session.context.counters->draining) {
-            socket.close_with(CloseCode::going_away, "the server is stopping");
-            break;
-        }
+        const bool is_last_look = session.context.counters->draining;
         session.signal->lower();
         const auto turn = co_await session.feed.take_turn(kPage);
         if (turn == JobFeed::Turn::kEnded) {
             socket.close_with(CloseCode::normal, "the job has ended");
         } else if (turn == JobFeed::Turn::kDeleted) {
             socket.close_with(CloseCode::going_away, "the job was deleted");
+        } else if (turn == JobFeed::Turn::kIdle && is_last_look) {
+            socket.close_with(CloseCode::going_away, "the server is stopping");
         } else if (turn == JobFeed::Turn::kIdle && socket.is_open()) {
             co_await session.signal->wait_until(session.feed.due());
         }

@@ -239,10 +239,7 @@ WakeSignal::Clock::time_point next_due(const SharedSession& session) {
 net::awaitable<void> write_messages(SharedSession& session) {
     StreamSocket& socket = session.socket;
     while (socket.is_open()) {
-        if (session.context.counters->draining) {
-            socket.close_with(CloseCode::going_away, "the server is stopping");
-            break;
-        }
+        const bool is_last_look = session.context.counters->draining;
         session.signal->lower();
         co_await answer_pending(session);
         bool busy = false;
@@ -251,7 +248,9 @@ net::awaitable<void> write_messages(SharedSession& session) {
             busy = co_await take_turn(session) || busy;
             co_await answer_pending(session);
         }
-        if (!busy && socket.is_open()) {
+        if (!busy && is_last_look) {
+            socket.close_with(CloseCode::going_away, "the server is stopping");
+        } else if (!busy && socket.is_open()) {
             co_await session.signal->wait_until(next_due(session));
         }
     }

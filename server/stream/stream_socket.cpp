@@ -46,10 +46,6 @@ StreamSocket::StreamSocket(beast::tcp_stream stream, const HttpLimits& limits)
     timeout.idle_timeout = std::chrono::seconds(limits.stream_idle_seconds);
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
-    socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-        response.set(beast::http::field::sec_websocket_protocol, "modelsynth.v1");
-        response.set(beast::http::field::server, "modelsynthd");
-    }));
     socket_.read_message_max(proto::kStreamMessageBytesMax);
     socket_.auto_fragment(false);
 }
@@ -57,6 +53,13 @@ StreamSocket::StreamSocket(beast::tcp_stream stream, const HttpLimits& limits)
 net::awaitable<bool> StreamSocket::accept(
     const beast::http::request<beast::http::string_body>& request
 ) {
+    auto decorate = [id =
+                         std::string(request["X-Request-Id"])](websocket::response_type& response) {
+        response.set(beast::http::field::sec_websocket_protocol, "modelsynth.v1");
+        response.set(beast::http::field::server, "modelsynthd");
+        response.set("X-Request-Id", id);
+    };
+    socket_.set_option(websocket::stream_base::decorator(std::move(decorate)));
     auto [error] = co_await socket_.async_accept(request, kSocketToken);
     co_return !error;
 }

@@ -29,7 +29,7 @@ class StreamSocket {
     StreamSocket(const StreamSocket&) = delete;
     StreamSocket& operator=(const StreamSocket&) = delete;
 
-    // Answers the handshake; false when that failed.
+    // Answers the handshake, with its X-Request-Id; false when that failed.
     [[nodiscard]] net::awaitable<bool> accept(
         const boost::beast::http::request<boost::beast::http::string_body>& request
     );

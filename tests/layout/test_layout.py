@@ -13,10 +13,11 @@ ALLOWED = {
     "clients/cli/run_local.cpp": ["clients/", "proto/", "solver/"],
     "clients/": ["clients/", "proto/"],
     "server/store/": ["server/store/", "proto/"],
-    "server/jobs/": ["server/jobs/", "server/store/", "proto/", "solver/"],
+    "server/log/": ["server/log/"],
     "server/access/": ["server/access/", "server/store/", "proto/"],
-    "server/http/": ["server/http/", "server/access/", "server/stream/", "server/jobs/",
-                     "server/store/", "proto/", "solver/"],
+    "server/jobs/": ["server/jobs/", "server/store/", "server/log/", "proto/", "solver/"],
+    "server/http/": ["server/http/", "server/stream/", "server/access/", "server/jobs/",
+                     "server/store/", "server/log/", "proto/", "solver/"],
     "server/": ["server/", "proto/", "solver/"],
     "proto/": ["proto/", "solver/"],
     "solver/core/": ["solver/core/"],
@@ -31,6 +32,9 @@ ALLOWED = {
 FORBIDDEN = {
     "solver/": ["boost/", "nlohmann/", "spdlog/", "sqlite3.h", "openssl/", "chrono"],
     "proto/": ["boost/", "spdlog/", "sqlite3.h", "thread", "mutex"],
+    "server/store/": ["boost/", "spdlog/", "prometheus/"],
+    "server/jobs/": ["boost/", "prometheus/"],
+    "server/http/": ["prometheus/"],
 }
 
 
@@ -94,7 +98,7 @@ def test_awaiting_expressions_build_no_lambda_or_aggregate():
 
 @pytest.mark.parametrize("folder", [
     "solver", "solver/core", "solver/core/sat", "solver/discrete", "solver/discrete/analysis",
-    "solver/discrete/explanation", "solver/mesh", "solver/examples", "solver/registry", "proto", "server", "server/store", "server/jobs",
+    "solver/discrete/explanation", "solver/mesh", "solver/examples", "solver/registry", "proto", "server", "server/log", "server/store", "server/jobs",
     "server/http", "server/stream", "server/ops", "clients", "clients/cli", "tests", "deploy"])
 def test_every_folder_says_what_it_is(folder):
     text = (ROOT / folder / "README.md").read_text()

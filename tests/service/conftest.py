@@ -33,12 +33,13 @@ class Answer:
 
 class Server:
     """One modelsynthd process. stop() ends it gently, kill() as a crash would; start() again uses
-    the same store."""
+    the same store. Unless a test says so, running jobs have no time to end when it stops."""
 
     def __init__(self, data, *options, workers=2):
         self.data = pathlib.Path(data)
         self.bin_dir = BIN_DIR
-        self.options = [str(option) for option in options]
+        self.options = ["--drain-timeout", "0"] if "--drain-timeout" not in options else []
+        self.options += [str(option) for option in options]
         self.workers = workers
         self.process = None
         self.port = None

@@ -69,12 +69,8 @@ def test_head_is_get_without_the_body(server, job_id, path):
         assert head.headers["content-length"] == str(len(whole.body))
 
 
-NOT_BUILT = pytest.mark.xfail(strict=True, reason="in the contract, not yet built")
-
-
 @pytest.mark.parametrize("path", [
-    "/openapi.json", "/asyncapi.json", "/", "/docs", "/v1/limits",
-    pytest.param("/metrics", marks=NOT_BUILT)])
+    "/openapi.json", "/asyncapi.json", "/metrics", "/", "/docs", "/v1/limits"])
 def test_every_document_of_the_contract_is_served(server, path):
     assert server.get(path).status == 200
 

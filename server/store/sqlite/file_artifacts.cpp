@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -152,6 +153,13 @@ fs::path FileArtifacts::path_of(const std::string& digest) const {
     return directory_ / digest.substr(0, 2) / digest.substr(2, 2) / digest;
 }
 
+ArtifactStore::Space FileArtifacts::space() const {
+    std::error_code error;
+    const fs::space_info info = fs::space(directory_, error);
+    // What cannot be told is not held against anybody; writing will show.
+    return {used_bytes_, error ? std::numeric_limits<std::uint64_t>::max() : info.available};
+}
+
 Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::put(std::string_view bytes) {
     // The pin comes first: from then on nobody removes the file, whether it is there already or
     // about to be.
@@ -208,7 +216,12 @@ Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_vi
     const fs::path target = path_of(digest);
     std::error_code error;
     fs::create_directories(target.parent_path(), error);
-    fs::rename(temporary, target, error);
+    {
+        const std::lock_guard lock(mutex_);
+        const bool is_new = !exists(digest);
+        fs::rename(temporary, target, error);
+        used_bytes_ += !error && is_new ? bytes.size() : 0;
+    }
     if (error) {
         return give_up("an artifact cannot be put in its place");
     }
@@ -260,15 +273,27 @@ bool FileArtifacts::empty() const {
 void FileArtifacts::remove_if_unpinned(const std::string& digest) {
     const std::lock_guard lock(mutex_);
     if (!pins_.contains(digest)) {
+        const std::uint64_t size = size_of(digest);
         std::error_code ignored;  // an orphan is found again at the next start
-        fs::remove(path_of(digest), ignored);
+        used_bytes_ -= fs::remove(path_of(digest), ignored) ? size : 0;
     }
+}
+
+std::uint64_t FileArtifacts::size_of(const std::string& digest) const {
+    std::error_code error;
+    const std::uint64_t size = is_digest(digest) ? fs::file_size(path_of(digest), error) : 0;
+    return error ? 0 : size;
 }
 
 void FileArtifacts::sweep(const std::function<bool(const std::string&)>& is_used) {
     std::vector<fs::path> orphans;
     for (const auto& entry : fs::recursive_directory_iterator(directory_)) {
-        if (entry.is_regular_file() && !is_used(entry.path().filename().string())) {
+        if (!entry.is_regular_file()) {
+            continue;
+        }
+        if (is_used(entry.path().filename().string())) {
+            used_bytes_ += entry.file_size();
+        } else {
             orphans.push_back(entry.path());
         }
     }

@@ -2,6 +2,8 @@
 
 #include "server/store/artifact_store.h"
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -17,6 +19,7 @@ class FileArtifacts final : public ArtifactStore {
     // Empties `temporary`.
     FileArtifacts(std::filesystem::path directory, std::filesystem::path temporary);
 
+    [[nodiscard]] Space space() const override;
     [[nodiscard]] Stored<std::unique_ptr<Pin>> put(std::string_view bytes) override;
     [[nodiscard]] Stored<std::unique_ptr<Pin>> pin(const std::string& digest) override;
     [[nodiscard]] Stored<std::unique_ptr<Reader>> open(const std::string& digest) override;
@@ -34,7 +37,11 @@ class FileArtifacts final : public ArtifactStore {
         on_unpinned_ = std::move(hook);
     }
 
-    // Removes every file for which `is_used` answers no. For the start, before anyone else.
+    // Its size, 0 when it is not there.
+    [[nodiscard]] std::uint64_t size_of(const std::string& digest) const;
+
+    // Removes every file for which `is_used` answers no, and counts what the others take. For the
+    // start, before anyone else.
     void sweep(const std::function<bool(const std::string& digest)>& is_used);
 
   private:
@@ -48,6 +55,7 @@ class FileArtifacts final : public ArtifactStore {
     std::filesystem::path directory_;
     std::filesystem::path temporary_;
     std::mutex mutex_;
+    std::atomic<std::uint64_t> used_bytes_ = 0;  // changed with mutex_ held
     std::map<std::string, std::size_t> pins_;
     std::uint64_t next_temporary_ = 0;
     std::function<void(const std::string&)> on_unpinned_;

@@ -103,6 +103,15 @@ std::optional<JobCheckpoint> find_checkpoint(Database& database, const std::stri
         row.natural(0), static_cast<std::uint32_t>(row.natural(1)), row.text(2), row.blob(3)};
 }
 
+bool is_digest_used(Database& database, const std::string& digest) {
+    Statement row = database.prepare(
+        "SELECT EXISTS (SELECT 1 FROM job_artifact WHERE digest = ?1) OR "
+        "EXISTS (SELECT 1 FROM example WHERE digest = ?1)"
+    );
+    row.bind(std::string_view(digest));
+    return row.step() && row.integer(0) != 0;
+}
+
 bool holds(Database& database, const Lease& lease) {
     Statement row = database.prepare("SELECT token, state FROM job WHERE id = ?");
     row.bind(std::string_view(lease.job_id));

@@ -52,6 +52,9 @@ inline constexpr const char* kLevel =
     Database& database, const std::string& id
 );
 
+// Whether a job or an example needs the artifact.
+[[nodiscard]] bool is_digest_used(Database& database, const std::string& digest);
+
 // Whether the lease still holds the job.
 [[nodiscard]] bool holds(Database& database, const Lease& lease);
 

@@ -18,19 +18,6 @@ using proto::Job;
 using proto::JobState;
 using proto::UnixMillis;
 
-namespace {
-
-bool is_digest_used(Database& database, const std::string& digest) {
-    Statement row = database.prepare(
-        "SELECT EXISTS (SELECT 1 FROM job_artifact WHERE digest = ?1) OR "
-        "EXISTS (SELECT 1 FROM example WHERE digest = ?1)"
-    );
-    row.bind(std::string_view(digest));
-    return row.step() && row.integer(0) != 0;
-}
-
-}  // namespace
-
 Stored<std::unique_ptr<SqliteStore>> SqliteStore::open(
     const std::filesystem::path& directory, UnixMillis retention_ms
 ) {
@@ -199,31 +186,6 @@ void SqliteStore::unlink_artifacts(Database& database, const std::string& id, Un
         }
     }
     database.prepare("DELETE" + where).bind(std::string_view(id)).run();
-}
-
-void SqliteStore::expire(UnixMillis now) {
-    // The job stays and tells that its model is gone; a failure is tried again the next time.
-    static_cast<void>(writer_->call<void>([&](Database& database) -> Stored<void> {
-        std::vector<std::string> expired;
-        {
-            Statement rows = database.prepare(
-                "SELECT id FROM job WHERE expires < ? AND "
-                "(EXISTS (SELECT 1 FROM job_artifact WHERE job_id = job.id) OR "
-                "EXISTS (SELECT 1 FROM checkpoint WHERE job_id = job.id)) LIMIT 1000"
-            );
-            rows.bind(now);
-            while (rows.step()) {
-                expired.push_back(rows.text(0));
-            }
-        }
-        for (const std::string& id : expired) {
-            unlink_artifacts(database, id, Unlinked::kAll);
-            database.prepare("DELETE FROM checkpoint WHERE job_id = ?")
-                .bind(std::string_view(id))
-                .run();
-        }
-        return {};
-    }));
 }
 
 }  // namespace modelsynth::server

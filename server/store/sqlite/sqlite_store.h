@@ -38,6 +38,11 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
 
     [[nodiscard]] ArtifactStore& artifacts() { return *artifacts_; }
 
+    // Told, on the store's thread, how long each commit took. Set before the first call.
+    void on_commit(std::function<void(double seconds)> told) {
+        writer_->on_commit(std::move(told));
+    }
+
     // JobStore
     [[nodiscard]] Stored<Submitted> submit(const NewJob& job, const QueueLimits& limits) override;
     [[nodiscard]] Stored<std::optional<proto::Job>> find_key(
@@ -66,6 +71,8 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     [[nodiscard]] Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id) override;
     [[nodiscard]] Stored<void> link(const std::string& id, const ArtifactLink& link) override;
     void expire(proto::UnixMillis now) override;
+    void forget(proto::UnixMillis then) override;
+    void shed(std::uint64_t bytes_max, proto::UnixMillis now) override;
 
     // EventLog
     [[nodiscard]] Stored<EventPage> read(
@@ -95,6 +102,8 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     void after_commit(Database& database);
     void tell_listeners(const std::set<std::string>& jobs);
 
+    // Takes what an ended job has left but its row and events.
+    void take_artifacts(Database& database, const std::string& id);
     void end_cancelled(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
     // Everything, or what was made and not what the job works on.

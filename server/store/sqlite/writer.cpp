@@ -90,6 +90,7 @@ void Writer::run() {
 }
 
 void Writer::commit(std::deque<Operation>& batch) {
+    const auto begun = std::chrono::steady_clock::now();
     std::vector<Stored<void>> outcomes;
     try {
         database_.execute("BEGIN IMMEDIATE");
@@ -104,6 +105,10 @@ void Writer::commit(std::deque<Operation>& batch) {
             // There was no transaction; nothing is left to take back.
         }
         outcomes.assign(batch.size(), unavailable(error.what()));
+    }
+    if (on_commit_) {
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+        on_commit_(took.count());
     }
     for (std::size_t i = 0; i < batch.size(); ++i) {
         batch[i].done(std::move(outcomes[i]));

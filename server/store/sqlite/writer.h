@@ -64,6 +64,9 @@ class Writer {
     // Runs on the writer's thread after each commit, once the operations were told.
     void after_commit(std::function<void(Database&)> hook) { after_commit_ = std::move(hook); }
 
+    // Told on the writer's thread how long each commit took.
+    void on_commit(std::function<void(double seconds)> told) { on_commit_ = std::move(told); }
+
     // Finishes what is queued and stops.
     void close();
 
@@ -77,6 +80,7 @@ class Writer {
 
     Database database_;
     std::function<void(Database&)> after_commit_;
+    std::function<void(double)> on_commit_;
     std::mutex mutex_;
     std::condition_variable work_;
     std::condition_variable room_;

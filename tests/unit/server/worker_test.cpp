@@ -55,7 +55,8 @@ class WorkerOnAnEarlierLog : public testing::Test {
              limits_,
              std::make_shared<spdlog::logger>(
                  "none", std::make_shared<spdlog::sinks::null_sink_mt>()
-             )},
+             ),
+             observer_},
             claim
         );
     }
@@ -116,6 +117,7 @@ class WorkerOnAnEarlierLog : public testing::Test {
     }
 
     EmbeddedStore store_;
+    JobObserver observer_;
     proto::RequestLimits limits_;
     ExampleLibrary examples_{store_.examples(), store_.artifacts(), limits_, 10};
     LiveJobs live_;
