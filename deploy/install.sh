@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing: install.sh build|test
-#   build: what is needed to build and run; test: also what the tests need
+# Installs the Debian packages that are missing: install.sh build|test|run
+#   build: what is needed to build and run; test: also what the tests need; run: only to run
 set -euo pipefail
 
 packages=(
@@ -13,6 +13,11 @@ if [ "${1:-build}" = test ]; then
   packages+=(libgtest-dev curl python3 python3-pytest python3-jsonschema
              clang-format)
   command -v npm >/dev/null || packages+=(nodejs npm)
+fi
+
+if [ "${1:-build}" = run ]; then
+  packages=(libfmt9 libmeshoptimizer2d libpng16-16 libprometheus-cpp-core1.0 libspdlog1.10
+            libsqlite3-0 libssl3 libtinygltf2d zlib1g)
 fi
 
 missing=()
