@@ -125,15 +125,21 @@ struct HeaderOfStatus {
     const char* component;
 };
 
-constexpr std::array<HeaderOfStatus, 4> kHeadersOfProblems = {
+constexpr std::array<HeaderOfStatus, 6> kHeadersOfProblems = {
     {{401, "WWW-Authenticate", "WwwAuthenticate"},
      {415, "Accept", "Accept"},
      {429, "Retry-After", "RetryAfter"},
+     {429, "RateLimit", "RateLimit"},
+     {429, "RateLimit-Policy", "RateLimitPolicy"},
      {503, "Retry-After", "RetryAfter"}}};
 
 // What whoever asks may be told before anything is looked at, wherever a key may be needed.
 constexpr std::array<const char*, 5> kProblemsOfAccess = {
     "unauthorized", "missing-scope", "forbidden-origin", "unknown-host", "too-fast"};
+
+OrderedJson reference_to(const std::string& kind, const std::string& name) {
+    return {{"$ref", "#/components/" + kind + "/" + name}};
+}
 
 OrderedJson problem_response(const std::vector<ProblemKind>& kinds) {
     std::string description;
@@ -145,8 +151,7 @@ OrderedJson problem_response(const std::vector<ProblemKind>& kinds) {
     OrderedJson response = {{"description", description + "."}};
     for (const HeaderOfStatus& header : kHeadersOfProblems) {
         if (header.status == kinds.front().status) {
-            response["headers"][header.name] = {
-                {"$ref", std::string("#/components/headers/") + header.component}};
+            response["headers"][header.name] = reference_to("headers", header.component);
         }
     }
     response["content"]["application/problem+json"]["schema"] = {
@@ -176,6 +181,61 @@ void add_problems(OrderedJson& operation) {
         operation["responses"][std::to_string(status)] = problem_response(kinds);
     }
     operation["responses"]["default"] = {{"$ref", std::string(kResponsePlace) + "Problem"}};
+}
+
+// The word of a response for what has an entity tag, and so conditions, codings and parts.
+constexpr const char* kTagged = "x-tagged";
+
+struct Component {
+    const char* name;
+    const char* component;
+};
+
+constexpr std::array<const char*, 5> kParametersOfTagged = {
+    "AcceptEncoding", "IfMatch", "IfNoneMatch", "Range", "IfRange"};
+
+constexpr std::array<Component, 5> kResponsesOfTagged = {
+    {{"206", "Part"},
+     {"304", "NotModified"},
+     {"406", "NotAcceptable"},
+     {"412", "PreconditionFailed"},
+     {"416", "RangeNotSatisfiable"}}};
+
+constexpr std::array<Component, 5> kHeadersOfTagged = {
+    {{"ETag", "ETag"},
+     {"Vary", "Vary"},
+     {"Cache-Control", "CacheControl"},
+     {"Content-Encoding", "ContentEncoding"},
+     {"Accept-Ranges", "AcceptRanges"}}};
+
+// Adds what can be asked of a resource that is answered with a tagged representation, and what is
+// answered then.
+void add_conditions(OrderedJson& operation, const OrderedJson& components) {
+    const OrderedJson ok = operation.at("responses").value("200", OrderedJson::object());
+    const std::string place = ok.value("$ref", "");
+    const OrderedJson& meant =
+        place.empty() ? ok : components.at("responses").at(place.substr(kResponsePlace.size()));
+    if (!meant.contains(kTagged)) {
+        return;
+    }
+    for (const char* parameter : kParametersOfTagged) {
+        operation["parameters"].push_back(reference_to("parameters", parameter));
+    }
+    for (const Component& response : kResponsesOfTagged) {
+        operation["responses"][response.name] = reference_to("responses", response.component);
+    }
+}
+
+// Puts the headers in place of the word.
+void add_headers_of_tagged(OrderedJson& responses) {
+    for (OrderedJson& response : responses) {
+        if (response.erase(kTagged) == 0) {
+            continue;
+        }
+        for (const Component& header : kHeadersOfTagged) {
+            response["headers"][header.name] = reference_to("headers", header.component);
+        }
+    }
 }
 
 // What HEAD does where there is GET: no body, and so no ranges of it.
@@ -212,15 +272,21 @@ OrderedJson head_of(const OrderedJson& get, const OrderedJson& components) {
 
 std::string openapi_json() {
     OrderedJson document = OrderedJson::parse(kOpenApiSkeleton);
+    OrderedJson& components = document["components"];
     for (OrderedJson& path : document["paths"]) {
         for (OrderedJson& operation : path) {
             if (operation.contains("operationId")) {  // not the path's parameters
+                add_conditions(operation, components);
+                add_headers_of_tagged(operation["responses"]);
                 add_problems(operation);
             }
         }
+    }
+    add_headers_of_tagged(components["responses"]);
+    for (OrderedJson& path : document["paths"]) {
         // A handshake has no HEAD.
         if (path.contains("get") && !path["get"]["responses"].contains("101")) {
-            path["head"] = head_of(path["get"], document["components"]);
+            path["head"] = head_of(path["get"], components);
         }
     }
     SchemaPlacer(document).place();

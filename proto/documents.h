@@ -11,6 +11,8 @@ namespace modelsynth::proto {
 //   - the type of a problem lists all that there are.
 // In openapi.json besides:
 //   - `x-problems` of an operation, names of problem_kinds(), become its responses by status;
+//   - `x-tagged` of a response says that it has an entity tag: its headers are added, and to the
+//     operation the parameters and responses of codings, conditions and ranges;
 //   - every operation has the response `default`, and what is got can be asked for by HEAD.
 
 // GET /openapi.json, OpenAPI 3.1.

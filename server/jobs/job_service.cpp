@@ -50,6 +50,17 @@ const char* profile_name(GlbProfile profile) {
     return "nodes";
 }
 
+std::string artifact_name(const JobService::ModelFile& file) {
+    const char* suffix = file.compression == GlbCompression::kMeshopt ? ".meshopt" : "";
+    return model_artifact(
+        std::string(profile_name(file.profile)) + suffix, file.alternative.value_or(0)
+    );
+}
+
+bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
+
+}  // namespace
+
 CapacityLimits capacity_of(const JobServiceConfig& config) {
     CapacityLimits limits;
     limits.memory_bytes = config.memory_bytes_max;
@@ -62,17 +73,6 @@ CapacityLimits capacity_of(const JobServiceConfig& config) {
     limits.large_jobs = std::max<std::size_t>(1, config.workers - 1);
     return limits;
 }
-
-std::string artifact_name(const JobService::ModelFile& file) {
-    const char* suffix = file.compression == GlbCompression::kMeshopt ? ".meshopt" : "";
-    return model_artifact(
-        std::string(profile_name(file.profile)) + suffix, file.alternative.value_or(0)
-    );
-}
-
-bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
-
-}  // namespace
 
 JobService::JobService(
     const JobServiceConfig& config,

@@ -51,6 +51,9 @@ struct JobServiceConfig {
     std::uint64_t disk_free_bytes_min = 0;  // with less no work is taken
 };
 
+// How much may run at the same time under that configuration, on this machine.
+[[nodiscard]] CapacityLimits capacity_of(const JobServiceConfig& config);
+
 // Everything that can be done with jobs and examples, without a word of HTTP. Owns the worker
 // threads. Thread-safe; calls block on the disk and some on the processor, so none is made from a
 // network thread.

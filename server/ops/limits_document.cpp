@@ -3,8 +3,11 @@
 #include "proto/limit_codec.h"
 #include "proto/limits.h"
 #include "proto/stream_message.h"
+#include "server/access/tickets.h"
+#include "server/http/content_coding.h"
 #include "server/http/handlers.h"
 #include "server/http/request_fields.h"
+#include "server/stream/snapshot.h"
 #include "solver/mesh/glb_writer.h"
 
 #include <vector>
@@ -75,6 +78,17 @@ std::vector<Limit> limits_of_connections(const HttpLimits& http) {
             "Of any other body; 413 beyond."
         ),
         limit(
+            "coded_bytes_min",
+            kCodedBytesMin,
+            "bytes",
+            "Of what is sent with gzip; less is sent as it is."
+        ),
+    };
+}
+
+std::vector<Limit> limits_of_streams(const HttpLimits& http) {
+    return {
+        limit(
             "socket_message_bytes_max",
             proto::kStreamMessageBytesMax,
             "bytes",
@@ -104,6 +118,59 @@ std::vector<Limit> limits_of_connections(const HttpLimits& http) {
             "messages",
             "To /v1/stream that wait for answers; more are not read meanwhile."
         ),
+        limit(
+            "stream_lag_max",
+            kLagMax,
+            "events",
+            "That a client which takes too long for one write may be behind; a snapshot beyond."
+        ),
+        limit(
+            "stream_slow_write_seconds",
+            kSlowWrite.count(),
+            "seconds",
+            "For one write, before a client counts as slow."
+        ),
+    };
+}
+
+std::vector<Limit> limits_of_keys() {
+    return {
+        {"key_requests_per_second_max",
+         std::nullopt,
+         "requests/second",
+         "As the entry of the key gives it; 429 too-fast beyond. RateLimit-Policy tells."},
+        {"key_unfinished_jobs_max",
+         std::nullopt,
+         "jobs",
+         "As the entry of the key gives it; 429 too-many-jobs beyond."},
+        limit(
+            "tickets_max",
+            Tickets::kCountMax,
+            "tickets",
+            "Given and not used yet; 503 unavailable beyond."
+        ),
+        limit("ticket_seconds", Tickets::kLifetime.count(), "seconds", "For a ticket to be used."),
+    };
+}
+
+std::vector<Limit> limits_of_running_jobs(const JobServiceConfig& jobs) {
+    const CapacityLimits capacity = capacity_of(jobs);
+    return {
+        limit("workers", jobs.workers, "jobs", "That are solved at the same time."),
+        limit(
+            "memory_bytes_max",
+            capacity.memory_bytes,
+            "bytes",
+            "That running jobs are thought to need, others wait; 422 too-large for one that needs "
+            "more."
+        ),
+        limit("large_choices", jobs.large_choices, "labels", "A job that chooses more is large."),
+        limit(
+            "large_jobs_max",
+            capacity.large_jobs,
+            "jobs",
+            "Large ones that are solved at the same time; others wait."
+        ),
     };
 }
 
@@ -120,7 +187,7 @@ std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
             "prefer_wait_seconds_max",
             kWaitSecondsMax,
             "seconds",
-            "That Prefer: wait is granted; more is taken for this."
+            "That Prefer: wait, and wait of GET /v1/jobs/{id}, is granted; more is taken for this."
         ),
         limit(
             "cancel_wait_seconds_max",
@@ -218,6 +285,12 @@ std::vector<Limit> limits_of_models(const proto::RequestLimits& requests) {
             "bytes",
             "Of a GLB that is made; 422 too-large beyond."
         ),
+        limit(
+            "gzipped_model_bytes_max",
+            JobService::kGzippedBytesMax,
+            "bytes",
+            "Of a GLB that is sent with gzip; larger ones are had as they are alone."
+        ),
     };
 }
 
@@ -235,8 +308,8 @@ std::vector<Limit> retention_times(const Config& config) {
         {"idempotency_key_seconds",
          std::nullopt,
          "seconds",
-         "As long as the job that it named. A key is the server's own, whoever sends it, and is "
-         "looked at on POST /v1/jobs alone."},
+         "As long as the job that it named. It is known to the key that it came with alone, or to "
+         "all where there are no keys, and is looked at on POST /v1/jobs."},
         {"example_seconds", std::nullopt, "seconds", "An uploaded example: until it is deleted."},
     };
 }
@@ -247,7 +320,10 @@ std::string limits_document(const Config& config) {
     std::vector<Limit> limits = limits_of_models(config.jobs.limits);
     append(limits, limits_of_documents(config.jobs.limits));
     append(limits, limits_of_service(config.jobs));
+    append(limits, limits_of_running_jobs(config.jobs));
+    append(limits, limits_of_keys());
     append(limits, limits_of_connections(config.http.limits));
+    append(limits, limits_of_streams(config.http.limits));
     return proto::limits_json(limits, retention_times(config));
 }
 

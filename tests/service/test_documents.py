@@ -3,6 +3,8 @@ header and body of openapi.json, every message of asyncapi.json, every command o
 
 import base64
 import collections
+import datetime
+import gzip
 import hashlib
 import html
 import json
@@ -19,7 +21,7 @@ from api_document import ApiDocument
 from checks import ENDLESS, HILLS, STRIPES, assert_problem, job_request, state_of, wait_until
 from conftest import ROOT, Answer, Server
 from test_continuous import HUT
-from websocket_client import WebSocketClient
+from websocket_client import BINARY, TEXT, WebSocketClient
 from workload import DECLINED_JOB, TILES, YARD, submit
 
 TOOLS = pathlib.Path(__file__).resolve().parent / "documents"
@@ -27,6 +29,11 @@ TAG = {"If-None-Match": "*"}
 OTHER_TAG = {"If-Match": '"another"'}
 PART = {"Range": "bytes=0-9"}
 BEYOND = {"Range": "bytes=999999999-"}
+CODED = {"Accept-Encoding": "gzip"}
+NOTHING = {"Accept-Encoding": "*;q=0"}
+HANDSHAKE = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13",
+             "Sec-WebSocket-Key": base64.b64encode(bytes(16)).decode(),
+             "Sec-WebSocket-Protocol": "modelsynth.v1"}
 
 # Answers that take a gigabyte, half a minute, or a job that goes while it is waited for.
 NOT_REACHED = {
@@ -85,7 +92,7 @@ def test_the_documents_stand_alone(openapi, asyncapi):
         for reference in references:
             assert reference.startswith("#/"), reference
             document.resolver.resolve(reference)
-        assert "x-problems" not in json.dumps(document.document)
+        assert not re.search('"x-(problems|tagged)"', json.dumps(document.document))
 
 
 def test_schemas_are_those_of_the_solvers(server, openapi):
@@ -184,17 +191,19 @@ class Walk:
     def send(self, method, path, name="", query="", **more):
         target = re.sub(r"\{\w+\}", name, path) + query
         answer = self.server.request(method, target, **more)
+        if answer.headers.get("content-encoding") == "gzip":
+            answer.body = gzip.decompress(answer.body)
         self.answers[method, path].append(answer)
         if method == "GET" and path in self.heads:
             self.answers["HEAD", path].append(self.server.request("HEAD", target, **more))
         return answer
 
-    def get_representation(self, path, name=""):
+    def get_representation(self, path, name="", query=""):
         """All that can be asked of what has an entity tag."""
-        for headers in ({}, PART, BEYOND, TAG, OTHER_TAG):
-            self.send("GET", path, name, headers=headers)
+        for headers in ({}, CODED, PART, BEYOND, TAG, OTHER_TAG, NOTHING):
+            self.send("GET", path, name, query, headers=headers)
 
-    def shake_hands(self, path, name):
+    def shake_hands(self, path, name=""):
         with WebSocketClient(self.server.port, path.replace("{id}", name)) as client:
             self.answers["GET", path].append(Answer(client.status, client.headers.items(), b""))
             self.answers["GET", path][-1].headers.pop("upgrade")
@@ -202,7 +211,7 @@ class Walk:
 
 
 def walk_examples(walk):
-    walk.send("GET", "/v1/examples")
+    walk.get_representation("/v1/examples")
     uploaded = walk.send("POST", "/v1/examples", body=STRIPES).json()["id"]
     solids = walk.send("POST", "/v1/examples", body=HUT).json()["id"]
     walk.send("POST", "/v1/examples", body=b"{", headers={"Content-Type": "application/json"})
@@ -210,15 +219,18 @@ def walk_examples(walk):
     walk.send("POST", "/v1/examples", body={"kind": "discrete", "name": "nothing"})
     walk.send("POST", "/v1/examples", body=b" " * 70_000,
               headers={"Content-Type": "application/json"})
-    for name in ("castle", "houses", uploaded, "nope"):
+    walk.get_representation("/v1/examples/{id}", "castle")
+    for name in ("houses", uploaded, "nope"):
         walk.send("GET", "/v1/examples/{id}", name)
     for kind in ("model", "pieces"):
         walk.get_representation(f"/v1/examples/{{id}}/{kind}.glb", uploaded)
         walk.send("GET", f"/v1/examples/{{id}}/{kind}.glb", "nope")
+    walk.get_representation("/v1/examples/{id}/analysis", uploaded)
+    walk.get_representation("/v1/examples/{id}/success.svg", uploaded)
+    walk.get_representation("/v1/examples/{id}/figures.svg", solids)
     for name in (uploaded, solids, "nope"):
-        walk.send("GET", "/v1/examples/{id}/analysis", name)
-        walk.send("GET", "/v1/examples/{id}/success.svg", name)
-        walk.send("GET", "/v1/examples/{id}/figures.svg", name)
+        for kind in ("analysis", "success.svg", "figures.svg"):
+            walk.send("GET", f"/v1/examples/{{id}}/{kind}", name)
     for query in ("?figure=0", "?figure=999999", "?figures=0"):
         walk.send("GET", "/v1/examples/{id}/figures.svg", solids, query)
     return uploaded
@@ -242,13 +254,19 @@ def walk_finished_jobs(walk):
                           (b" " * 70_000, json_type), (b"{}", json_type)):
         walk.send("POST", "/v1/jobs", body=body, headers=headers)
     walk.send("POST", "/v1/jobs", body={"from": {"job": failed["id"]}})
-    for job in (done, several, failed, solids):
+    walk.send("POST", "/v1/jobs", body=job_request(), headers={"Accept": "text/event-stream"})
+    walk.get_representation("/v1/jobs/{id}", done["id"])
+    for job in (several, failed, solids):
         walk.send("GET", "/v1/jobs/{id}", job["id"])
+    for query in ("?wait=60", "?wait=1&since=1", "?wait=x", "?since=999999"):
+        walk.send("GET", "/v1/jobs/{id}", done["id"], query)
+    walk.get_representation("/v1/jobs")
     for query in ("?limit=2", "?state=failed", "?limit=0", "?cursor=!"):
         walk.send("GET", "/v1/jobs", query=query)
     for name in ("model.glb", "preview.glb", "labels.json"):
         walk.get_representation(f"/v1/jobs/{{id}}/{name}", done["id"])
         walk.send("GET", f"/v1/jobs/{{id}}/{name}", failed["id"])
+    walk.get_representation("/v1/jobs/{id}/model.glb", done["id"], "?compression=meshopt")
     for name in ("model.glb", "labels.json"):
         for query in ("?alternative=1", "?alternative=64", "?alternative=x"):
             walk.send("GET", f"/v1/jobs/{{id}}/{name}", several["id"], query)
@@ -264,14 +282,14 @@ def walk_streams(walk, job):
     for query in ("", f"?after={last}", f"?after={last + 1}", "?after=x"):
         walk.send("GET", path, job["id"], query)
     path = "/v1/jobs/{id}/stream"
-    handshake = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13",
-                 "Sec-WebSocket-Key": base64.b64encode(bytes(16)).decode(),
-                 "Sec-WebSocket-Protocol": "modelsynth.v1"}
     walk.shake_hands(path, job["id"])
     walk.send("GET", path, job["id"])
-    walk.send("GET", path, job["id"], "?partial=all", headers=handshake)
-    walk.send("GET", path, "nope", headers=handshake)
-    walk.send("GET", path, job["id"], headers={**handshake, "Sec-WebSocket-Protocol": "chat"})
+    walk.send("GET", path, job["id"], "?partial=all", headers=HANDSHAKE)
+    walk.send("GET", path, "nope", headers=HANDSHAKE)
+    for path, name in ((path, job["id"]), ("/v1/stream", "")):
+        walk.send("GET", path, name, headers={**HANDSHAKE, "Sec-WebSocket-Protocol": "chat"})
+    walk.shake_hands("/v1/stream")
+    walk.send("GET", "/v1/stream")
 
 
 def walk_unfinished_jobs(walk, example):
@@ -305,12 +323,12 @@ def walk_service(walk):
     for body in (None, {"job": job}, {"job": "nope"}, {"job": 1}, b"{", b" " * 70_000):
         walk.send("POST", "/v1/tickets", body=body)
     walk.server.wait(job)
-    for path in ("/v1/solvers", "/v1/limits", "/healthz", "/readyz", "/metrics"):
+    for path in ("/v1/limits", "/healthz", "/readyz", "/metrics"):
         walk.send("GET", path)
-    for path in ("/openapi.json", "/asyncapi.json", "/docs", "/"):
+    for path in ("/v1/solvers", "/openapi.json", "/asyncapi.json", "/docs", "/"):
         walk.get_representation(path)
-    for name in ("discrete", "nope"):
-        walk.send("GET", "/v1/solvers/{name}", name)
+    walk.get_representation("/v1/solvers/{name}", "discrete")
+    walk.send("GET", "/v1/solvers/{name}", "nope")
     for name in ("contradiction", "nope"):
         walk.send("GET", "/problems/{name}", name)
 
@@ -396,7 +414,8 @@ def test_limits_are_those_of_the_running_server(make_server):
     server = make_server("--queue-max", 3, "--examples-max", 4, "--model-cells-max", 5000,
                          "--retention-hours", 2, "--job-body-bytes-max", 20000,
                          "--upload-body-bytes-max", 30000, "--connections-max", 50,
-                         "--head-seconds", 6, "--body-seconds", 7, "--idle-seconds", 8)
+                         "--head-seconds", 6, "--body-seconds", 7, "--idle-seconds", 8,
+                         "--memory-max", 123_000_000, "--large-choices", 40_000, workers=3)
     document = server.get("/v1/limits").json()
     limits = {name: limit["value"] for name, limit in document["limits"].items()}
     assert limits["queue_max"] == 3 and limits["examples_max"] == 4
@@ -404,6 +423,9 @@ def test_limits_are_those_of_the_running_server(make_server):
     assert limits["job_body_bytes_max"] == 20000 and limits["upload_body_bytes_max"] == 30000
     assert limits["connections_max"] == 50 and limits["head_seconds"] == 6
     assert limits["body_seconds"] == 7 and limits["idle_seconds"] == 8
+    assert limits["memory_bytes_max"] == 123_000_000 and limits["large_choices"] == 40_000
+    assert limits["workers"] == 3 and limits["large_jobs_max"] == 2
+    assert limits["key_requests_per_second_max"] is None
     assert document["retention"]["model_seconds"]["value"] == 7200
     assert document["retention"]["job_seconds"]["value"] == 4 * 7200
     assert document["retention"]["idempotency_key_seconds"]["value"] is None
@@ -412,6 +434,12 @@ def test_limits_are_those_of_the_running_server(make_server):
                                                   "parameters": {"size": [100, 10, 100]}})
     problem = assert_problem(refused, 422, "too-large")
     assert "model_cells_max is 5000" in problem["errors"][0]["detail"]
+
+
+def test_memory_is_the_machines_unless_it_is_given(server):
+    limit = server.get("/v1/limits").json()["limits"]["memory_bytes_max"]["value"]
+    pages, page = os.sysconf("SC_PHYS_PAGES"), os.sysconf("SC_PAGE_SIZE")
+    assert limit == pages * page // 4 * 3
 
 
 def test_limits_hold_at_their_edges(server, openapi):
@@ -433,6 +461,10 @@ def test_limits_hold_at_their_edges(server, openapi):
     for sent, status in ((key, 202), (key + "k", 400)):
         answer = server.request("POST", "/v1/jobs", job_request(), headers={"Idempotency-Key": sent})
         assert answer.status == status
+    given = datetime.datetime.now(datetime.timezone.utc)
+    expires = server.request("POST", "/v1/tickets").json()["expires"]
+    lives = datetime.datetime.fromisoformat(expires.replace("Z", "+00:00")) - given
+    assert 0 <= lives.total_seconds() - limits["ticket_seconds"] < 10
 
 
 # --- events against asyncapi.json
@@ -457,13 +489,16 @@ def check_event(asyncapi, channel, event):
     asyncapi.check(event, message["payload"], event["type"])
 
 
-def read_frame(asyncapi, data):
+def read_frame(asyncapi, data, message="frame"):
     """The fields of a binary frame, as the document lays them out."""
     codes = {"char": "s", "uint8": "B", "uint16": "H", "uint32": "I", "uint64": "Q", "int32": "i"}
-    fields = {}
-    for field in asyncapi.at("components", "messages", "frame")["x-layout"]:
+    fields, end = {}, 0
+    for field in asyncapi.at("components", "messages", message)["x-layout"]:
         if field["type"] == "bytes":
-            fields[field["name"]] = data[field["offset"]:]
+            start = field.get("offset", end)
+            end = start + fields[f"{field['name']}_bytes"]
+            fields[field["name"]] = data[start:end]
+            end += -end % 4
             continue
         kind, count = re.fullmatch(r"(\w+?)(?:\[(\d)\])?", field["type"]).groups()
         values = struct.unpack_from(f"<{count or ''}{codes[kind]}", data, field["offset"])
@@ -473,7 +508,7 @@ def read_frame(asyncapi, data):
             expected = field["value"]
             assert value == (expected.encode() if isinstance(expected, str) else expected)
         assert "values" not in field or str(value) in field["values"]
-    assert len(fields["payload"]) == fields["payload_bytes"]
+    assert len(fields["payload"]) == fields["payload_bytes"] and end - len(data) in range(4)
     return fields
 
 
@@ -484,11 +519,12 @@ def test_events_are_as_documented(server, asyncapi):
     for job in jobs:
         for event in server.events(job["id"]):
             check_event(asyncapi, "jobEvents", event)
+            assert "job_id" not in event
             asyncapi.check(event, {"$ref": "#/components/schemas/Event"})
             seen.add(event["type"])
             outcomes.add(event.get("outcome"))
             ends |= {"result", "same_as"} & set(event) if event["type"] == "alternative" else set()
-    assert seen == set(asyncapi.at("channels", "jobEvents", "messages"))
+    assert seen | {"snapshot"} == set(asyncapi.at("channels", "jobEvents", "messages"))
     assert outcomes == {None, "accepted", "reverted"} and ends == {"result", "same_as"}
 
 
@@ -511,6 +547,47 @@ def test_messages_of_the_socket_are_as_documented(server, asyncapi, partial, kin
         else:
             check_event(asyncapi, "jobStream", message)
     assert seen and seen <= kinds
+
+
+def message_of(sent):
+    """The name of the message of /v1/stream that a text of the server is."""
+    if sent["type"] == "answer":
+        return f"answerTo{sent['request'].title()}"
+    return sent["type"]
+
+
+def test_messages_of_the_shared_socket_are_as_documented(server, asyncapi):
+    done = server.wait(submit(server, {"example": YARD, "size": (20, 6, 20), "parameters": {}})["id"])
+    running = server.request("POST", "/v1/jobs", {
+        "solver": "discrete", "example": "castle", "parameters": ENDLESS}).json()
+    requests = [{"type": "subscribe", "job": running["id"], "partial": "glb"},
+                {"type": "unsubscribe", "job": running["id"]},
+                {"type": "cancel", "job": running["id"]},
+                {"type": "unsubscribe", "job": "nope"},
+                {"type": "subscribe", "job": done["id"], "after": 1, "partial": "labels"}]
+    channel = asyncapi.at("channels", "stream")
+    seen = set()
+    with WebSocketClient(server.port, channel["address"]) as client:
+        for number, request in enumerate(requests):
+            request = {"id": number, **request}
+            asyncapi.check(request, asyncapi.at(
+                "channels", "stream", "messages", request["type"])["payload"])
+            client.send(TEXT, json.dumps(request).encode())
+        while "end" not in seen:
+            message = client.message()
+            if message.opcode == BINARY:
+                frame = read_frame(asyncapi, message.payload, "namedFrame")
+                assert frame["job_id"].decode() in (done["id"], running["id"])
+                seen.add("namedFrame")
+                continue
+            sent = json.loads(message.payload)
+            name = message_of(sent)
+            asyncapi.check(sent, asyncapi.at("channels", "stream", "messages", name)["payload"])
+            assert "time" not in sent or sent["job_id"] in (done["id"], running["id"])
+            seen.add(name)
+    assert seen <= set(channel["messages"])
+    assert {"answerToSubscribe", "answerToUnsubscribe", "answerToCancel", "refusal", "end",
+            "namedFrame", "block", "succeeded"} <= seen
 
 
 def test_an_event_of_another_form_would_be_found(asyncapi):

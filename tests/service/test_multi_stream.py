@@ -16,9 +16,11 @@ SUBSCRIPTIONS_MAX = 64
 
 
 def schema(name):
-    document = json.loads((ROOT / f"proto/schemas/{name}.json").read_text())
+    path = ROOT / f"proto/schemas/{name}.json"
+    document = json.loads(path.read_text())
     jsonschema.Draft202012Validator.check_schema(document)
-    return jsonschema.Draft202012Validator(document)
+    neighbours = jsonschema.RefResolver(path.as_uri(), document)
+    return jsonschema.Draft202012Validator(document, resolver=neighbours)
 
 
 FROM_CLIENT, FROM_SERVER = schema("stream.client"), schema("stream.server")
