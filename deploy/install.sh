@@ -6,18 +6,18 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build ccache
   libboost1.81-dev nlohmann-json3-dev libtinygltf-dev libspdlog-dev libfmt-dev
-  libcli11-dev libexpected-dev libsqlite3-dev libssl-dev libpng-dev
-  libcadical-dev libeigen3-dev libmeshoptimizer-dev zlib1g-dev prometheus-cpp-dev
+  libcli11-dev libexpected-dev libsqlite3-dev libssl-dev libcurl4-openssl-dev ca-certificates
+  libpng-dev libcadical-dev libeigen3-dev libmeshoptimizer-dev zlib1g-dev prometheus-cpp-dev
 )
 if [ "${1:-build}" = test ]; then
-  packages+=(libgtest-dev curl python3 python3-pytest python3-jsonschema
+  packages+=(libgtest-dev curl openssl python3 python3-pytest python3-jsonschema
              clang-format)
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 
 if [ "${1:-build}" = run ]; then
-  packages=(libfmt9 libmeshoptimizer2d libpng16-16 libprometheus-cpp-core1.0 libspdlog1.10
-            libsqlite3-0 libssl3 libtinygltf2d zlib1g)
+  packages=(ca-certificates libcurl4 libfmt9 libmeshoptimizer2d libpng16-16
+            libprometheus-cpp-core1.0 libspdlog1.10 libsqlite3-0 libssl3 libtinygltf2d zlib1g)
 fi
 
 missing=()

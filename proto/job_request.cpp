@@ -110,11 +110,13 @@ class RequestReader {
         const Json& json,
         const RequestLimits& limits,
         const FindExample& find_example,
-        const FindOrigin& find_origin
+        const FindOrigin& find_origin,
+        const CheckWebhook& check_webhook
     )
         : limits_(limits),
           find_example_(find_example),
           find_origin_(find_origin),
+          check_webhook_(check_webhook),
           fields_(Value(json, "", faults_)) {}
 
     Parsed<JobRequest> read(std::uint64_t seed_if_absent) {
@@ -389,6 +391,30 @@ class RequestReader {
         if (const auto tags = fields_.optional("tags")) {
             tags_ = read_tags(*tags, limits_);
         }
+        if (const auto webhook = fields_.optional("webhook")) {
+            read_webhook(*webhook);
+        }
+    }
+
+    void read_webhook(const Value& value) {
+        if (find_origin_ && !check_webhook_) {
+            value.fault("this server sends no webhooks (--webhook-secret-file)");
+            return;
+        }
+        ObjectReader fields(value);
+        const auto field = fields.required("url");
+        fields.finish();
+        const auto url = field ? field->string(limits_.webhook_url_characters_max)
+                               : std::optional<std::string>();
+        if (!url) {
+            return;
+        }
+        if (check_webhook_) {
+            if (auto wrong = check_webhook_(*url)) {
+                field->fault(std::move(*wrong));
+            }
+        }
+        request_.webhook = *url;
     }
 
     void check_complete() {
@@ -457,12 +483,16 @@ class RequestReader {
             echo["deadline"] = *request_.deadline_seconds;
         }
         echo["tags"] = std::move(tags_);
+        if (!request_.webhook.empty()) {
+            echo["webhook"] = {{"url", request_.webhook}};
+        }
         return dump(echo);
     }
 
     const RequestLimits& limits_;
     const FindExample& find_example_;
     const FindOrigin& find_origin_;
+    const CheckWebhook& check_webhook_;
     Faults faults_;
     ObjectReader fields_;
     JobRequest request_;
@@ -484,13 +514,15 @@ Parsed<JobRequest> parse_job_request(
     const RequestLimits& limits,
     const FindExample& find_example,
     const FindOrigin& find_origin,
-    std::uint64_t seed_if_absent
+    std::uint64_t seed_if_absent,
+    const CheckWebhook& check_webhook
 ) {
     auto json = parse_json(body, limits.json);
     if (!json) {
         return tl::unexpected(std::move(json.error()));
     }
-    return RequestReader(*json, limits, find_example, find_origin).read(seed_if_absent);
+    return RequestReader(*json, limits, find_example, find_origin, check_webhook)
+        .read(seed_if_absent);
 }
 
 Parsed<std::string> canonical_json(std::string_view body, const JsonLimits& limits) {

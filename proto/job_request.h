@@ -29,6 +29,7 @@ struct JobRequest {
     std::int32_t priority = 0;
     std::optional<double> deadline_seconds;
     std::optional<std::uint32_t> alternatives;  // so many different models, as a list
+    std::string webhook;                        // URL that is told of the job's end; empty: none
     // The request as JSON text with seed and defaults filled in: sent again it gives the same
     // model. This is what a job keeps and shows.
     std::string echo;
@@ -44,8 +45,12 @@ using FindExample = std::function<std::optional<Example>(const std::string& id)>
 using FindOrigin =
     std::function<Parsed<JobRequest>(const std::string& job_id, std::uint32_t alternative)>;
 
+// What is wrong with the URL of a webhook, or nothing.
+using CheckWebhook = std::function<std::optional<std::string>(const std::string& url)>;
+
 // Reads and checks a request. `seed_if_absent` is used when it names none. Without `find_origin`
-// it is an echo, which tells all that it needs of the job that it starts from.
+// it is an echo, which tells all that it needs of the job that it starts from. Without
+// `check_webhook` a request, but for an echo, may have none.
 // Fails: malformed-json, invalid-request with every fault, too-large; when nothing else is wrong,
 //        as find_origin.
 [[nodiscard]] Parsed<JobRequest> parse_job_request(
@@ -53,7 +58,8 @@ using FindOrigin =
     const RequestLimits& limits,
     const FindExample& find_example,
     const FindOrigin& find_origin,
-    std::uint64_t seed_if_absent
+    std::uint64_t seed_if_absent,
+    const CheckWebhook& check_webhook = nullptr
 );
 
 // The text with keys sorted and white space removed, for telling equal requests apart from

@@ -30,6 +30,7 @@ struct RequestLimits {
     std::size_t example_cells_max = 1'000'000;  // cells of one example
     std::size_t name_characters_max = 128;
     std::size_t tags_max = 32;
+    std::size_t webhook_url_characters_max = 2048;
     std::size_t constraints_max = 1000;
     std::size_t member_rules_max = 32;  // constraints that take memory for every cell
     std::size_t symmetries_max = 8;     // take memory for every cell, too

@@ -1,6 +1,7 @@
 #include "server/http/admission.h"
 #include "server/http/api.h"
 #include "server/http/server.h"
+#include "server/http/tls_identity.h"
 #include "server/jobs/job_service.h"
 #include "server/log/event_line.h"
 #include "server/ops/config.h"
@@ -8,10 +9,14 @@
 #include "server/ops/logging.h"
 #include "server/ops/metrics.h"
 #include "server/store/sqlite/sqlite_store.h"
+#include "server/webhooks/webhook_sender.h"
+#include "server/webhooks/webhook_url.h"
 
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -36,10 +41,34 @@ std::string metrics_text(
     );
 }
 
+// Of what may change while the server runs.
+void tell_reload(
+    spdlog::logger& log,
+    const tl::expected<void, std::string>& loaded,
+    const char* when_read,
+    const char* when_wrong
+) {
+    if (loaded) {
+        log_event(log, level::info, when_read, {});
+    } else {
+        log_event(log, level::err, when_wrong, {{"why", loaded.error()}});
+    }
+}
+
+// Null when jobs may have no webhooks.
+std::unique_ptr<WebhookSender> make_sender(
+    const WebhookConfig& config, SqliteStore& store, std::shared_ptr<spdlog::logger> log
+) {
+    return config.secret_file.empty()
+               ? nullptr
+               : std::make_unique<WebhookSender>(config, store, store, std::move(log));
+}
+
 void announce(const Config& config, std::uint16_t port) {
     const bool is_v6 = config.http.address.find(':') != std::string::npos;
     std::printf(
-        "listening on http://%s%s%s:%u\n",
+        "listening on %s://%s%s%s:%u\n",
+        config.http.tls.certificate.empty() ? "http" : "https",
         is_v6 ? "[" : "",
         config.http.address.c_str(),
         is_v6 ? "]" : "",
@@ -62,10 +91,24 @@ int serve(const Config& config) {
     if (const auto loaded = admission.load_keys(); !loaded) {
         return refuse_to_start(loaded.error());
     }
+    const auto webhooks = make_sender(config.webhooks, **store, log);
+    if (webhooks) {
+        if (const auto loaded = webhooks->load_secrets(); !loaded) {
+            return refuse_to_start(loaded.error());
+        }
+        service.take_webhooks([rules = config.webhooks.rules](const std::string& url) {
+            return find_url_fault(url, rules);
+        });
+        webhooks->start();
+    }
+    TlsIdentity tls(config.http.tls);
+    if (const auto loaded = tls.load(); !loaded) {
+        return refuse_to_start(loaded.error());
+    }
     Api api(service, admission, config.http.limits, make_documents(limits_document(config)), [&] {
         return metrics_text(metrics, **store, service, logging);
     });
-    HttpServer server(config.http, api, log, metrics);
+    HttpServer server(config.http, api, tls, log, metrics);
     announce(config, server.listen());
     log_event(
         *log,
@@ -76,11 +119,20 @@ int serve(const Config& config) {
     ServerHooks hooks;
     hooks.on_signal = [&service] { service.refuse_work(); };
     hooks.finish_work = [&service, &config] { service.drain(config.drain_timeout); };
-    hooks.on_hangup = [&admission, &log] {
-        if (const auto loaded = admission.load_keys(); loaded) {
-            log_event(*log, level::info, "keys read again", {});
-        } else {
-            log_event(*log, level::err, "the keys stay as they were", {{"why", loaded.error()}});
+    hooks.on_hangup = [&admission, &tls, &webhooks, &log] {
+        tell_reload(*log, admission.load_keys(), "keys read again", "the keys stay as they were");
+        if (tls.is_on()) {
+            tell_reload(
+                *log, tls.load(), "certificate read again", "the certificate stays as it was"
+            );
+        }
+        if (webhooks) {
+            tell_reload(
+                *log,
+                webhooks->load_secrets(),
+                "webhook secret read again",
+                "the webhook secret stays as it was"
+            );
         }
     };
     server.run(hooks);

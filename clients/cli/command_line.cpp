@@ -72,6 +72,11 @@ CLI::App* add_command(
         )
         ->type_name("KEY")
         ->check(refuse_control);
+    command
+        ->add_option(
+            "--ca", invocation.ca_file, "PEM file of the roots to trust in place of the system's"
+        )
+        ->check(CLI::ExistingFile);
     command->add_flag("--json", invocation.as_json, "Write JSON, for programs");
     return command;
 }

@@ -27,7 +27,8 @@ struct UploadOptions {
 // A command line, read.
 struct Invocation {
     std::string server = "http://127.0.0.1:8080";
-    std::string key;  // sent as a bearer token; empty: none
+    std::string key;      // sent as a bearer token; empty: none
+    std::string ca_file;  // of the roots that https is trusted by; empty: the system's
     bool as_json = false;
     std::variant<
         ExamplesOptions,

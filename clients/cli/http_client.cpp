@@ -7,7 +7,11 @@
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
@@ -32,7 +36,12 @@ constexpr std::size_t kBodyBytesMax = std::size_t{256} << 20;
 
 class Connection {
   public:
-    explicit Connection(const ServerUrl& server) : server_(server) {}
+    // `context`: null without TLS.
+    Connection(const ServerUrl& server, net::ssl::context* context) : server_(server) {
+        if (context != nullptr) {
+            tls_.emplace(stream_, *context);
+        }
+    }
 
     [[nodiscard]] error_code open() {
         error_code error;
@@ -41,7 +50,18 @@ class Connection {
         if (error) {
             return error;
         }
-        return wait(kConnectMax, [&](auto done) { stream_.async_connect(places, done); });
+        error = wait(kConnectMax, [&](auto done) { stream_.async_connect(places, done); });
+        return error || !tls_ ? error : shake_hands();
+    }
+
+    // Calls with the stream that requests and answers go over.
+    template <class Use>
+    void with_stream(const Use& use) {
+        if (tls_) {
+            use(*tls_);
+        } else {
+            use(stream_);
+        }
     }
 
     // Starts an operation and waits for its end.
@@ -60,8 +80,6 @@ class Connection {
         return *result;
     }
 
-    beast::tcp_stream& stream() { return stream_; }
-
     beast::flat_buffer& buffer() { return buffer_; }
 
     [[nodiscard]] Failure failure(const std::string& what, const error_code& error) const {
@@ -70,17 +88,44 @@ class Connection {
         }
         Failure failure{
             ExitCode::kUnreachable,
-            what + " http://" + server_.authority() + server_.prefix + ": " + error.message()};
+            what + " " + server_.scheme() + server_.authority() + server_.prefix + ": " +
+                error.message()};
         failure.is_idle = error == beast::error::timeout;
         return failure;
     }
 
   private:
+    [[nodiscard]] error_code shake_hands() {
+        error_code is_name;
+        static_cast<void>(net::ip::make_address(server_.host, is_name));
+        if (is_name) {
+            SSL_set_tlsext_host_name(tls_->native_handle(), server_.host.c_str());
+        }
+        tls_->set_verify_callback(net::ssl::host_name_verification(server_.host));
+        return wait(kConnectMax, [&](auto done) {
+            tls_->async_handshake(net::ssl::stream_base::client, done);
+        });
+    }
+
     const ServerUrl& server_;
     net::io_context io_;
     beast::tcp_stream stream_{io_};
+    std::optional<net::ssl::stream<beast::tcp_stream&>> tls_;
     beast::flat_buffer buffer_;
 };
+
+// Has servers checked against the roots in the file, or those of the system.
+error_code trust(net::ssl::context& context, const std::string& ca_file) {
+    error_code error;
+    SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
+    context.set_verify_mode(net::ssl::verify_peer, error);
+    if (ca_file.empty()) {
+        context.set_default_verify_paths(error);
+    } else {
+        context.load_verify_file(ca_file, error);
+    }
+    return error;
+}
 
 http::request<http::string_body> make_message(
     const HttpRequest& request, const ServerUrl& server, const std::string& key
@@ -113,7 +158,9 @@ error_code write_message(
     http::request_serializer<http::string_body> serializer(message);
     while (!serializer.is_done()) {
         const error_code error = connection.wait(idle_max, [&](auto done) {
-            http::async_write_some(connection.stream(), serializer, done);
+            connection.with_stream([&](auto& stream) {
+                http::async_write_some(stream, serializer, done);
+            });
         });
         if (error) {
             return error;
@@ -134,7 +181,9 @@ error_code read_body(
         body.data = piece.data();
         body.size = piece.size();
         const error_code error = connection.wait(idle_max, [&](auto done) {
-            http::async_read_some(connection.stream(), connection.buffer(), parser, done);
+            connection.with_stream([&](auto& stream) {
+                http::async_read_some(stream, connection.buffer(), parser, done);
+            });
         });
         const std::size_t count = piece.size() - body.size;
         if (count > 0 && !sink({piece.data(), count})) {
@@ -151,7 +200,14 @@ error_code read_body(
 }  // namespace
 
 Outcome<HttpAnswer> HttpClient::send(const HttpRequest& request, const BodySink& sink) const {
-    Connection connection(server_);
+    std::optional<net::ssl::context> context;
+    if (server_.is_tls) {
+        context.emplace(net::ssl::context::tls_client);
+        if (const error_code error = trust(*context, ca_file_)) {
+            return wrong_usage("cannot read the roots " + ca_file_ + ": " + error.message());
+        }
+    }
+    Connection connection(server_, context ? &*context : nullptr);
     if (const error_code error = connection.open()) {
         return tl::unexpected(connection.failure("cannot reach", error));
     }
@@ -162,7 +218,9 @@ Outcome<HttpAnswer> HttpClient::send(const HttpRequest& request, const BodySink&
     Parser parser;
     parser.body_limit(boost::none);
     const error_code unread = connection.wait(request.idle_max, [&](auto done) {
-        http::async_read_header(connection.stream(), connection.buffer(), parser, done);
+        connection.with_stream([&](auto& stream) {
+            http::async_read_header(stream, connection.buffer(), parser, done);
+        });
     });
     if (unread) {
         return tl::unexpected(connection.failure("no answer from", unsent ? unsent : unread));

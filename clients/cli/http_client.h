@@ -30,16 +30,19 @@ struct HttpAnswer {
 // Takes the body of a good answer as it comes; false stops the transfer.
 using BodySink = std::function<bool(std::string_view bytes)>;
 
-// Speaks plain HTTP/1.1 to one server, a connection for each request. Blocks, but no longer than
-// `idle_max` without a byte, and ends early when the program is interrupted.
+// Speaks HTTP/1.1 to one server, with TLS where its URL says so, a connection for each request.
+// The server's certificate must lead to a root that is trusted and be for its name. Blocks, but no
+// longer than `idle_max` without a byte, and ends early when the program is interrupted.
 class HttpClient {
   public:
-    // `key` is sent as a bearer token; empty: none.
-    HttpClient(ServerUrl server, std::string key)
-        : server_(std::move(server)), key_(std::move(key)) {}
+    // `key` is sent as a bearer token; empty: none. `ca_file`: PEM of the roots that are trusted;
+    // empty: those of the system.
+    HttpClient(ServerUrl server, std::string key, std::string ca_file)
+        : server_(std::move(server)), key_(std::move(key)), ca_file_(std::move(ca_file)) {}
 
     // Ensures: the status is 2xx, and the body whole, or given whole to the sink.
     // Fails:   kUnreachable (no connection, a broken one, or silence: `is_idle`), kInterrupted,
+    //          kWrongUsage when the file of roots cannot be read,
     //          kFailed with the status for any other status, kFailed when the sink stopped it.
     [[nodiscard]] Outcome<HttpAnswer> send(
         const HttpRequest& request, const BodySink& sink = nullptr
@@ -48,6 +51,7 @@ class HttpClient {
   private:
     ServerUrl server_;
     std::string key_;
+    std::string ca_file_;
 };
 
 }  // namespace modelsynth::cli

@@ -61,7 +61,7 @@ Outcome<void> carry_out(const Invocation& invocation) {
         return run_local(*run, invocation.as_json);
     }
     return parse_server_url(invocation.server).and_then([&invocation](const ServerUrl& server) {
-        const HttpClient client(server, invocation.key);
+        const HttpClient client(server, invocation.key, invocation.ca_file);
         return std::visit(AskServer{client, invocation.as_json}, invocation.command);
     });
 }

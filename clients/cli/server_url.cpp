@@ -47,25 +47,23 @@ bool is_prefix(std::string_view prefix) {
 
 std::string ServerUrl::authority() const {
     const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
-    return port == "80" ? name : name + ":" + port;
+    return port == (is_tls ? "443" : "80") ? name : name + ":" + port;
 }
 
 Outcome<ServerUrl> parse_server_url(std::string_view text) {
     const auto refuse = [text](const std::string& why) {
         return wrong_usage("the server \"" + std::string(text) + "\" " + why);
     };
-    constexpr std::string_view kScheme = "http://";
-    if (text.starts_with("https://")) {
-        return refuse("is https, which this client does not speak; use a local proxy");
-    }
-    if (!text.starts_with(kScheme)) {
+    ServerUrl url;
+    url.is_tls = text.starts_with("https://");
+    const std::string_view scheme = url.scheme();
+    if (!text.starts_with(scheme)) {
         return refuse("is not a URL like http://127.0.0.1:8080");
     }
-    const std::string_view rest = text.substr(kScheme.size());
+    const std::string_view rest = text.substr(scheme.size());
     const std::size_t slash = rest.find('/');
     const std::string_view place = rest.substr(0, slash);
-    ServerUrl url;
-    std::string_view port = "80";
+    std::string_view port = url.is_tls ? "443" : "80";
     if (place.starts_with('[')) {
         const std::size_t close = place.find(']');
         url.host = place.substr(1, close == std::string_view::npos ? close : close - 1);

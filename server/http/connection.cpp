@@ -4,6 +4,7 @@
 #include "server/http/access_log.h"
 #include "server/http/correlation.h"
 #include "server/http/head_check.h"
+#include "server/http/transport.h"
 #include "server/log/event_line.h"
 #include "server/stream/event_cursor.h"
 #include "server/stream/event_stream.h"
@@ -17,7 +18,6 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
@@ -43,6 +43,13 @@ using Parser = http::request_parser<http::string_body>;
 using ErrorCode = boost::system::error_code;
 
 constexpr auto kToken = net::as_tuple(net::use_awaitable);
+
+// How a client begins that takes this port for one of TLS: a record of its handshake.
+constexpr std::string_view kTlsHandshake = "\x16\x03";
+// To one that takes a port of TLS for a plain one.
+constexpr std::string_view kSpeakTls =
+    "HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Type: text/plain\r\n"
+    "Content-Length: 39\r\n\r\nThis port speaks HTTPS. Use https://...\n";
 
 // One request as it comes in, and what becomes of the connection after it.
 struct Exchange {
@@ -74,21 +81,21 @@ class Notice {
 class Connection {
   public:
     Connection(
-        net::ip::tcp::socket socket,
-        const OpenConnections::Place& place,
-        const ConnectionContext& context
+        Transport stream, const OpenConnections::Place& place, const ConnectionContext& context
     )
-        : stream_(std::move(socket)),
+        : stream_(std::move(stream)),
           timer_(stream_.get_executor()),
           place_(place),
           context_(context) {
         buffer_.max_size(context.limits.head_bytes_max + kReadAhead);
-        stream_.expires_never();
     }
 
     net::awaitable<void> serve() {
         ErrorCode ignored;
         stream_.socket().set_option(net::ip::tcp::no_delay(true), ignored);
+        if (context_.tls->is_on() && !co_await shake_hands()) {
+            co_return;
+        }
         if (const char* reason = refusal_reason()) {
             context_.observer->on_connection_refused(reason);
             const Response busy = problem_response(
@@ -106,11 +113,34 @@ class Connection {
                 break;
             }
         }
-        co_await linger();
+        if (!handed_over_) {
+            // Lets the client read the answer before bytes that nobody read reset the connection.
+            co_await stream_.end(std::chrono::seconds(1), !closed_);
+        }
     }
 
   private:
     static constexpr std::size_t kReadAhead = 64 * 1024;
+
+    // The beginning of TLS; false when there is nobody to serve. What is too much gets no answer,
+    // since that would cost a handshake.
+    net::awaitable<bool> shake_hands() {
+        if (const char* reason = refusal_reason()) {
+            context_.observer->on_connection_refused(reason);
+            co_return false;
+        }
+        const auto error =
+            co_await stream_.shake_hands(std::chrono::seconds(context_.limits.head_seconds));
+        if (error) {
+            const std::string why = error.message();
+            log_event(*context_.log, spdlog::level::debug, "no TLS with a client", {{"why", why}});
+        }
+        if (is_plain_http(error)) {
+            co_await stream_.write_raw(kSpeakTls);
+            co_await stream_.end(std::chrono::seconds(1), true);
+        }
+        co_return !error;
+    }
 
     // Why there is no room for this connection, or null.
     [[nodiscard]] const char* refusal_reason() const {
@@ -195,6 +225,12 @@ class Connection {
         ErrorCode error;
         std::size_t head_end = find_head_end();
         while (head_end == std::string_view::npos && !error) {
+            if (buffered().starts_with(kTlsHandshake)) {
+                co_return refusal_of(
+                    proto::make_problem("malformed-request", "this port speaks HTTP without TLS"),
+                    exchange
+                );
+            }
             if (buffer_.size() > context_.limits.head_bytes_max) {
                 error = http::error::header_limit;
                 break;
@@ -256,9 +292,10 @@ class Connection {
         using namespace net::experimental::awaitable_operators;
         constexpr std::size_t kPiece = 16 * 1024;
         auto space = buffer_.prepare(kPiece);
+        stream_.expires_never();
         timer_.expires_at(until);
         auto outcome =
-            co_await (stream_.socket().async_read_some(space, kToken) || timer_.async_wait(kToken));
+            co_await (stream_.async_read_some(space, kToken) || timer_.async_wait(kToken));
         if (outcome.index() == 1) {
             co_return ErrorCode(beast::error::timeout);
         }
@@ -369,9 +406,10 @@ class Connection {
 
     net::awaitable<ErrorCode> read_into(Parser& parser) {
         using namespace net::experimental::awaitable_operators;
+        stream_.expires_never();
         timer_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
         auto outcome = co_await (
-            http::async_read(stream_.socket(), buffer_, parser, kToken) || timer_.async_wait(kToken)
+            http::async_read(stream_, buffer_, parser, kToken) || timer_.async_wait(kToken)
         );
         if (outcome.index() == 1) {
             co_return ErrorCode(beast::error::timeout);
@@ -426,7 +464,8 @@ class Connection {
     }
 
     // Looks without reading: bytes of a next request may be there, before the end too. A client
-    // that only stops sending cannot be told from one that has gone, and counts as gone.
+    // that only stops sending cannot be told from one that has gone, and counts as gone; one that
+    // says within TLS that it stops sending is still there.
     bool peer_has_closed() {
         pollfd state = {stream_.socket().native_handle(), POLLRDHUP, 0};
         return ::poll(&state, 1, 0) > 0;
@@ -606,29 +645,7 @@ class Connection {
         }
     }
 
-    // Lets the client read the answer before the connection is reset by bytes nobody read.
-    net::awaitable<void> linger() {
-        if (handed_over_) {
-            co_return;
-        }
-        ErrorCode ignored;
-        stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
-        if (closed_) {
-            co_return;
-        }
-        stream_.expires_after(std::chrono::seconds(1));
-        std::array<char, 4096> rest = {};
-        for (int i = 0; i < 1024; ++i) {
-            auto buffer = net::buffer(rest);
-            auto [error, bytes] = co_await stream_.async_read_some(buffer, kToken);
-            if (error) {
-                break;
-            }
-        }
-        stream_.close();
-    }
-
-    beast::tcp_stream stream_;
+    Transport stream_;
     net::steady_timer timer_;
     const OpenConnections::Place& place_;
     const ConnectionContext& context_;
@@ -644,7 +661,9 @@ net::awaitable<void> serve_connection(net::ip::tcp::socket socket, ConnectionCon
     const auto peer = socket.remote_endpoint(error);  // fails when the client has gone already
     const OpenConnections::Place place(context.counters->open, peer.address());
     const Notice notice(*context.observer, &HttpObserver::on_connections);
-    Connection connection(std::move(socket), place, context);
+    const auto tls = context.tls->context();
+    Transport stream = tls ? Transport(std::move(socket), *tls) : Transport(std::move(socket));
+    Connection connection(std::move(stream), place, context);
     co_await connection.serve();
 }
 

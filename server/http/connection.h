@@ -3,6 +3,7 @@
 #include "server/http/api.h"
 #include "server/http/http_observer.h"
 #include "server/http/open_connections.h"
+#include "server/http/tls_identity.h"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -29,6 +30,7 @@ struct ConnectionContext {
     boost::asio::thread_pool* pool;
     ConnectionCounters* counters;
     FrameSource* frames;
+    TlsIdentity* tls;
     HttpLimits limits;
     std::shared_ptr<spdlog::logger> log;
     HttpObserver* observer;

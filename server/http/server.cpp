@@ -31,11 +31,13 @@ struct HttpServer::State {
     State(
         const HttpConfig& given,
         Api& given_api,
+        TlsIdentity& given_tls,
         std::shared_ptr<spdlog::logger> logger,
         HttpObserver& given_observer
     )
         : config(given),
           api(given_api),
+          tls(given_tls),
           log(std::move(logger)),
           observer(given_observer),
           acceptor(io),
@@ -46,6 +48,7 @@ struct HttpServer::State {
 
     HttpConfig config;
     Api& api;
+    TlsIdentity& tls;
     std::shared_ptr<spdlog::logger> log;
     HttpObserver& observer;
     ConnectionCounters counters;  // connections that are left go with the next one
@@ -111,9 +114,13 @@ net::awaitable<void> await_hangups(net::signal_set& hangups, const std::function
 }  // namespace
 
 HttpServer::HttpServer(
-    const HttpConfig& config, Api& api, std::shared_ptr<spdlog::logger> log, HttpObserver& observer
+    const HttpConfig& config,
+    Api& api,
+    TlsIdentity& tls,
+    std::shared_ptr<spdlog::logger> log,
+    HttpObserver& observer
 )
-    : state_(std::make_unique<State>(config, api, std::move(log), observer)) {}
+    : state_(std::make_unique<State>(config, api, tls, std::move(log), observer)) {}
 
 HttpServer::~HttpServer() {
     state_->io.stop();
@@ -165,6 +172,7 @@ void HttpServer::run(const ServerHooks& hooks) {
         &state.pool,
         &state.counters,
         &state.frames,
+        &state.tls,
         state.config.limits,
         state.log,
         &state.observer};

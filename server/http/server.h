@@ -2,6 +2,7 @@
 
 #include "server/http/api.h"
 #include "server/http/http_observer.h"
+#include "server/http/tls_identity.h"
 
 #include <spdlog/logger.h>
 
@@ -18,6 +19,7 @@ struct HttpConfig {
     std::size_t network_threads = 1;
     std::size_t pool_threads = 4;  // for what blocks
     std::uint32_t drain_delay_seconds = 0;
+    TlsFiles tls;  // none: plain HTTP
     HttpLimits limits;
 };
 
@@ -32,10 +34,11 @@ struct ServerHooks {
 // to the Api on a pool of its own.
 class HttpServer {
   public:
-    // The observer outlives it.
+    // `tls` and the observer outlive it.
     HttpServer(
         const HttpConfig& config,
         Api& api,
+        TlsIdentity& tls,
         std::shared_ptr<spdlog::logger> log,
         HttpObserver& observer
     );

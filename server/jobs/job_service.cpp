@@ -197,7 +197,8 @@ Parsed<Submitted> JobService::submit(
         [&](const std::string& id, std::uint32_t alternative) {
             return find_origin(id, alternative, caller, inputs);
         },
-        make_seed()
+        make_seed(),
+        check_webhook_
     );
     if (!request) {
         return tl::unexpected(std::move(request.error()));
@@ -218,6 +219,7 @@ Parsed<Submitted> JobService::submit(
     job.id = make_job_id(job.created);
     job.owner = caller.owner;
     job.traceparent = traceparent;
+    job.webhook = request->webhook;
     job.solver = request->solver;
     job.seed = request->task.seed;
     job.priority = request->priority;

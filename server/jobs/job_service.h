@@ -80,6 +80,10 @@ class JobService {
         const Caller& caller,
         const std::string& traceparent
     );
+
+    // Jobs may have webhooks from now on, with URLs that pass the check. Before the first submit().
+    void take_webhooks(proto::CheckWebhook check) { check_webhook_ = std::move(check); }
+
     // Fails: not-found, also when it is none of the caller's. What follows by id takes the id of
     // anybody's job.
     [[nodiscard]] proto::Parsed<proto::Job> find(const std::string& id, const Caller& caller = {});
@@ -192,6 +196,7 @@ class JobService {
     EventLog& events_;
     ArtifactStore& artifacts_;
     std::shared_ptr<spdlog::logger> log_;
+    proto::CheckWebhook check_webhook_;  // none: there are no webhooks
     ExampleLibrary examples_;
     ExampleAnalyses analyses_;
     LiveJobs live_;

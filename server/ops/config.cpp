@@ -1,9 +1,12 @@
 #include "server/ops/config.h"
 
 #include "server/access/key_ring.h"
+#include "server/http/tls_identity.h"
 #include "server/ops/config_file.h"
 #include "server/ops/config_sources.h"
 #include "server/ops/options.h"
+#include "server/ops/outside_options.h"
+#include "server/webhooks/signing.h"
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/ip/address.hpp>
@@ -66,6 +69,12 @@ void resolve(
             {"--listen", "without keys (--keys) only loopback addresses are listened on"}
         );
     }
+    if (const TlsFiles& tls = config.http.tls; tls.certificate.empty() != tls.key.empty()) {
+        faults.push_back(
+            {tls.key.empty() ? "--tls-certificate" : "--tls-key",
+             "--tls-certificate and --tls-key go together"}
+        );
+    }
     auto& of_address_max = config.http.limits.connections_per_address_max;
     CLI::Option* option = app.get_option("--connections-per-address-max");
     of_address_max = is_loopback && option->empty() ? 0 : written.connections_per_address_max;
@@ -90,6 +99,18 @@ void check_keys(const Config& config, std::vector<ConfigFault>& faults) {
     }
     if (const auto keys = KeyRing::load(config.access.keys_file); !keys) {
         faults.push_back({"--keys", keys.error()});
+    }
+}
+
+void check_secrets(const Config& config, std::vector<ConfigFault>& faults) {
+    if (const auto loaded = TlsIdentity(config.http.tls).load(); !loaded) {
+        faults.push_back({"--tls-certificate", loaded.error()});
+    }
+    if (config.webhooks.secret_file.empty()) {
+        return;
+    }
+    if (const auto loaded = Signer(config.webhooks.secret_file).load(); !loaded) {
+        faults.push_back({"--webhook-secret-file", loaded.error()});
     }
 }
 
@@ -145,6 +166,8 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     add_work_options(app, config);
     add_keeping_options(app, config, written);
     add_http_options(app, config, written);
+    add_tls_options(app, config);
+    add_webhook_options(app, config);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -161,6 +184,7 @@ tl::expected<Config, int> parse_arguments(int argc, const char* const* argv) {
     resolve(app, written, config, faults);
     if (questions.check) {
         check_keys(config, faults);
+        check_secrets(config, faults);
     }
     if (!faults.empty()) {
         return tl::unexpected(refuse(faults));

@@ -3,6 +3,7 @@
 #include "server/http/server.h"
 #include "server/jobs/job_service.h"
 #include "server/ops/logging.h"
+#include "server/webhooks/webhook_config.h"
 
 #include <tl/expected.hpp>
 
@@ -21,6 +22,7 @@ struct Config {
     JobServiceConfig jobs;
     HttpConfig http;
     AccessConfig access;
+    WebhookConfig webhooks;
 };
 
 // The name of the program's version.

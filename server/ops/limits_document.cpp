@@ -174,7 +174,7 @@ std::vector<Limit> limits_of_running_jobs(const JobServiceConfig& jobs) {
     };
 }
 
-std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
+std::vector<Limit> limits_of_service(const JobServiceConfig& jobs, const WebhookConfig& webhooks) {
     return {
         limit("queue_max", jobs.queue_max, "jobs", "That wait; 503 queue-full beyond."),
         limit(
@@ -214,6 +214,13 @@ std::vector<Limit> limits_of_service(const JobServiceConfig& jobs) {
             "seconds",
             "That an example is analysed; 422 too-large beyond."
         ),
+        limit(
+            "webhook_tries_max",
+            webhooks.tries_max,
+            "tries",
+            "Of a webhook; then its message is dropped."
+        ),
+        limit("webhook_seconds", webhooks.try_seconds, "seconds", "For a webhook to be answered."),
         limit("problem_errors_max", proto::kFaultsMax, "errors", "Listed in one problem document."),
     };
 }
@@ -230,6 +237,12 @@ std::vector<Limit> limits_of_documents(const proto::RequestLimits& requests) {
         ),
         limit("seed_max", proto::kSeedMax, "", "The greatest seed."),
         limit("tags_max", requests.tags_max, "tags", "Of a job."),
+        limit(
+            "webhook_url_characters_max",
+            requests.webhook_url_characters_max,
+            "characters",
+            "Of a webhook's URL."
+        ),
         limit("name_characters_max", requests.name_characters_max, "characters", "Of a name."),
         limit(
             "deadline_seconds_max", requests.deadline_seconds_max, "seconds", "Of a job's deadline."
@@ -319,7 +332,7 @@ std::vector<Limit> retention_times(const Config& config) {
 std::string limits_document(const Config& config) {
     std::vector<Limit> limits = limits_of_models(config.jobs.limits);
     append(limits, limits_of_documents(config.jobs.limits));
-    append(limits, limits_of_service(config.jobs));
+    append(limits, limits_of_service(config.jobs, config.webhooks));
     append(limits, limits_of_running_jobs(config.jobs));
     append(limits, limits_of_keys());
     append(limits, limits_of_connections(config.http.limits));

@@ -61,6 +61,7 @@ struct NewJob {
     std::uint64_t cost = 1;  // of running it, in any unit; what owners share is counted in it
     std::uint64_t memory_bytes = 0;  // that running it takes
     std::string traceparent = {};
+    std::string webhook = {};  // URL that is told of its end; empty: none
 };
 
 // How much may be waiting already for a job to be taken.

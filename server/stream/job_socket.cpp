@@ -15,7 +15,7 @@ using CloseCode = StreamSocket::CloseCode;
 
 // What the two halves of a session share.
 struct JobSession {
-    JobSession(boost::beast::tcp_stream stream, JobStream wanted, const ConnectionContext& shared)
+    JobSession(Transport stream, JobStream wanted, const ConnectionContext& shared)
         : context(shared),
           socket(std::move(stream), context.limits),
           signal(std::make_shared<WakeSignal>(socket.executor())),
@@ -59,7 +59,7 @@ net::awaitable<void> write_events(JobSession& session) {
 }  // namespace
 
 net::awaitable<void> serve_job_socket(
-    boost::beast::tcp_stream stream,
+    Transport stream,
     boost::beast::http::request<boost::beast::http::string_body> request,
     JobStream wanted,
     ConnectionContext context

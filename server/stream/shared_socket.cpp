@@ -28,9 +28,7 @@ using proto::StreamRequest;
 using Pending = std::variant<StreamRequest, std::string>;
 
 struct SharedSession {
-    SharedSession(
-        boost::beast::tcp_stream stream, SocketUpgrade upgrade, const ConnectionContext& shared
-    )
+    SharedSession(Transport stream, SocketUpgrade upgrade, const ConnectionContext& shared)
         : client(std::move(upgrade)),
           context(shared),
           socket(std::move(stream), context.limits),
@@ -260,7 +258,7 @@ net::awaitable<void> write_messages(SharedSession& session) {
 }  // namespace
 
 net::awaitable<void> serve_shared_socket(
-    boost::beast::tcp_stream stream,
+    Transport stream,
     boost::beast::http::request<boost::beast::http::string_body> request,
     SocketUpgrade upgrade,
     ConnectionContext context

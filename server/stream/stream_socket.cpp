@@ -31,14 +31,14 @@ constexpr auto kWatchInterval = std::chrono::seconds(1);
 
 }  // namespace
 
-StreamSocket::StreamSocket(beast::tcp_stream stream, const HttpLimits& limits)
+StreamSocket::StreamSocket(Transport stream, const HttpLimits& limits)
     : socket_(std::move(stream)),
       finished_signal_(socket_.get_executor()),
       stall_max_(limits.write_seconds) {
-    auto& lowest = beast::get_lowest_layer(socket_);
-    lowest.expires_never();  // the WebSocket keeps its own time
+    Transport& transport = socket_.next_layer();
+    transport.expires_never();  // the WebSocket keeps its own time
     boost::system::error_code ignored;
-    lowest.socket().set_option(
+    transport.socket().set_option(
         net::socket_base::send_buffer_size(limits.stream_send_buffer_bytes), ignored
     );
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
@@ -124,7 +124,7 @@ net::awaitable<void> StreamSocket::finish() {
         auto reason = closing_;
         co_await socket_.async_close(reason, kSocketToken);
     } else {
-        beast::get_lowest_layer(socket_).close();
+        socket_.next_layer().close();
     }
     finished_ = true;
     finished_signal_.raise();
@@ -137,7 +137,7 @@ net::awaitable<void> StreamSocket::watch() {
             close_with(CloseCode::try_again_later, "the client does not read");
         }
         if (writing_since_ && now - *writing_since_ > stall_max_ + kStallGrace) {
-            beast::get_lowest_layer(socket_).close();
+            socket_.next_layer().close();
         }
         co_await finished_signal_.wait_until(now + kWatchInterval);
     }

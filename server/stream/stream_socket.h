@@ -1,10 +1,10 @@
 #pragma once
 
 #include "server/http/api.h"
+#include "server/http/transport.h"
 #include "server/stream/wake_signal.h"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
@@ -24,7 +24,7 @@ class StreamSocket {
   public:
     using CloseCode = boost::beast::websocket::close_code;
 
-    StreamSocket(boost::beast::tcp_stream stream, const HttpLimits& limits);
+    StreamSocket(Transport stream, const HttpLimits& limits);
 
     StreamSocket(const StreamSocket&) = delete;
     StreamSocket& operator=(const StreamSocket&) = delete;
@@ -74,7 +74,7 @@ class StreamSocket {
         bool is_binary, std::string_view head, std::string_view payload
     );
 
-    boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+    boost::beast::websocket::stream<Transport> socket_;
     WakeSignal finished_signal_;
     std::chrono::seconds stall_max_;
     boost::beast::websocket::close_reason closing_;  // none: the client closes, or is gone

@@ -14,6 +14,7 @@ ALLOWED = {
     "clients/": ["clients/", "proto/"],
     "server/store/": ["server/store/", "proto/"],
     "server/log/": ["server/log/"],
+    "server/webhooks/": ["server/webhooks/", "server/store/", "server/log/", "proto/"],
     "server/access/": ["server/access/", "server/store/", "proto/"],
     "server/jobs/": ["server/jobs/", "server/store/", "server/log/", "proto/", "solver/"],
     "server/http/": ["server/http/", "server/stream/", "server/access/", "server/jobs/",
@@ -99,7 +100,7 @@ def test_awaiting_expressions_build_no_lambda_or_aggregate():
 @pytest.mark.parametrize("folder", [
     "solver", "solver/core", "solver/core/sat", "solver/discrete", "solver/discrete/analysis",
     "solver/discrete/explanation", "solver/mesh", "solver/examples", "solver/registry", "proto", "server", "server/log", "server/store", "server/jobs",
-    "server/http", "server/stream", "server/ops", "clients", "clients/cli", "tests", "deploy"])
+    "server/http", "server/stream", "server/ops", "server/webhooks", "clients", "clients/cli", "tests", "deploy"])
 def test_every_folder_says_what_it_is(folder):
     text = (ROOT / folder / "README.md").read_text()
     assert 0 < len(text.splitlines()) <= 40

@@ -43,10 +43,15 @@ class Server:
         self.workers = workers
         self.process = None
         self.port = None
+        self.tls = None  # the client's SSLContext, where the server speaks HTTPS
 
     @property
     def url(self):
-        return f"http://127.0.0.1:{self.port}"
+        return f"{self.scheme}://127.0.0.1:{self.port}"
+
+    @property
+    def scheme(self):
+        return "https" if "--tls-key" in self.options else "http"
 
     def start(self):
         self.data.mkdir(parents=True, exist_ok=True)
@@ -56,7 +61,7 @@ class Server:
              "--workers", str(self.workers), *self.options],
             stdout=subprocess.PIPE, stderr=self.log, text=True)
         line = self.process.stdout.readline().strip()
-        assert line.startswith("listening on http://127.0.0.1:"), line
+        assert line.startswith(f"listening on {self.scheme}://127.0.0.1:"), line
         self.port = int(line.rsplit(":", 1)[1])
         return self
 
@@ -82,8 +87,17 @@ class Server:
         self.log.close()
         self.process = None
 
+    def connection(self, timeout=60):
+        if self.tls:
+            return http.client.HTTPSConnection("127.0.0.1", self.port, timeout=timeout,
+                                               context=self.tls)
+        return http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
+
+    def log_text(self):
+        return (self.data.parent / (self.data.name + ".log")).read_text()
+
     def request(self, method, path, body=None, headers=None, timeout=60):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
+        connection = self.connection(timeout)
         headers = dict(headers or {})
         if isinstance(body, (dict, list)):
             body = json.dumps(body)

@@ -193,7 +193,7 @@ def test_a_request_that_cannot_be_done_tells_every_fault(tmp_path):
         ["list", "--nonesuch"],
         ["list", "--state", "nonesuch"],
         ["list", "--limit", "0"],
-        ["list", "--server", "https://example.org"],
+        ["list", "--server", "ftp://example.org"],
         ["list", "--server", "127.0.0.1:8080"],
         ["list", "--key", "a\r\nX: y"],
         ["submit"],

@@ -42,10 +42,11 @@ class Frame:
 
 
 class WebSocketClient:
-    """A connection that shook hands. `receive_buffer` makes it a slow reader's."""
+    """A connection that shook hands. `receive_buffer` makes it a slow reader's; `tls` is the
+    SSLContext of one that is encrypted."""
 
     def __init__(self, port, path, protocol="modelsynth.v1", headers=None, timeout=30,
-                 receive_buffer=None):
+                 receive_buffer=None, tls=None):
         self.timeout = timeout
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         if receive_buffer:
@@ -54,6 +55,8 @@ class WebSocketClient:
         self.buffer = b""
         try:
             self.socket.connect(("127.0.0.1", port))
+            if tls:
+                self.socket = tls.wrap_socket(self.socket, server_hostname="127.0.0.1")
             self._shake_hands(path, protocol, headers or {})
         except BaseException:
             self.socket.close()

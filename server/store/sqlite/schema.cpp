@@ -11,7 +11,7 @@ namespace {
 
 // The form of the tables is numbered; step i makes form i + 1 of form i, step 0 out of nothing. A
 // step that was released is not changed any more.
-constexpr std::array<const char*, 4> kSteps = {
+constexpr std::array<const char*, 5> kSteps = {
     R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value INTEGER NOT NULL) STRICT, WITHOUT ROWID;
 CREATE TABLE job (
@@ -107,6 +107,17 @@ CREATE TABLE example_owner (
     PRIMARY KEY (example_id, owner)
 ) STRICT, WITHOUT ROWID;
 INSERT INTO example_owner SELECT id, '' FROM example;
+)sql",
+    R"sql(
+ALTER TABLE job ADD COLUMN webhook TEXT NOT NULL DEFAULT '';
+CREATE TABLE delivery (
+    job_id TEXT PRIMARY KEY REFERENCES job (id) ON DELETE CASCADE,
+    url TEXT NOT NULL,
+    receiver TEXT NOT NULL,
+    tries INTEGER NOT NULL DEFAULT 0,
+    due INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+CREATE INDEX delivery_due ON delivery (due);
 )sql"};
 
 // 0: the file is new.

@@ -237,6 +237,7 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
             .bind(std::string_view(failed ? outcome.error : ""))
             .bind(std::string_view(id))
             .run();
+        add_delivery(database, id, outcome.finished);
         return find_job(database, id);
     });
 }

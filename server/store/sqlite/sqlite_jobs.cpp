@@ -94,8 +94,8 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limi
             .prepare(
                 "INSERT INTO job (id, solver, seed, priority, request, example_id, "
                 "request_hash, idempotency_key, state, deadline, created, owner, cost, "
-                "memory_bytes, turn, traceparent) "
-                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, 0, ?, ?, ?, ?, ?, ?, ?)"
+                "memory_bytes, turn, traceparent, webhook) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?, 0, ?, ?, ?, ?, ?, ?, ?, ?)"
             )
             .bind(std::string_view(job.id))
             .bind(std::string_view(job.solver))
@@ -115,6 +115,7 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limi
             .bind(job.memory_bytes)
             .bind(turn)
             .bind(std::string_view(job.traceparent))
+            .bind(std::string_view(job.webhook))
             .run();
         if (auto linked = link_artifacts(database, job.id, job.artifacts); !linked) {
             return tl::unexpected(std::move(linked.error()));

@@ -126,6 +126,12 @@ void SqliteStore::after_commit(Database& database) {
         // The rest is looked at after the next commit.
     }
     tell_listeners(std::exchange(touched_, {}));
+    if (std::exchange(has_new_deliveries_, false)) {
+        const std::lock_guard lock(listeners_mutex_);
+        if (on_delivery_) {
+            on_delivery_();
+        }
+    }
 }
 
 void SqliteStore::append_event(Database& database, const std::string& id, const NewEvent& event) {
@@ -152,6 +158,7 @@ void SqliteStore::end_cancelled(Database& database, const std::string& id, UnixM
         .bind(now + retention_ms_)
         .bind(std::string_view(id))
         .run();
+    add_delivery(database, id, now);
 }
 
 Stored<void> SqliteStore::link_artifacts(

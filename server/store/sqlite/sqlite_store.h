@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/store/artifact_store.h"
+#include "server/store/delivery_store.h"
 #include "server/store/event_log.h"
 #include "server/store/job_store.h"
 #include "server/store/sqlite/database.h"
@@ -24,7 +25,10 @@ namespace modelsynth::server {
 //   DIR/modelsynth.db   jobs, events, links, examples
 //   DIR/artifacts/      files by SHA-256
 //   DIR/tmp/            files being written; emptied at the start
-class SqliteStore final : public JobStore, public EventLog, public ExampleStore {
+class SqliteStore final : public JobStore,
+                          public EventLog,
+                          public ExampleStore,
+                          public DeliveryStore {
   public:
     // Opens or makes the store and takes back what a crash left: jobs that were running are
     // queued again, unreferenced files are removed. Fails: kUnavailable, kConflict when another
@@ -92,6 +96,16 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     [[nodiscard]] Stored<void> erase_example(const std::string& id, const OwnerFilter& owner)
         override;
 
+    // DeliveryStore
+    [[nodiscard]] Stored<DueDeliveries> due_deliveries(
+        proto::UnixMillis now, std::size_t per_receiver_max, std::size_t limit
+    ) override;
+    [[nodiscard]] Stored<void> postpone_delivery(
+        const std::string& job_id, std::uint32_t tries, proto::UnixMillis due
+    ) override;
+    [[nodiscard]] Stored<void> drop_delivery(const std::string& job_id) override;
+    void on_delivery(std::function<void()> told) override;
+
   private:
     class Listener;
     using ListenerMap = std::multimap<std::string, Listener*>;
@@ -105,6 +119,8 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     // Takes what an ended job has left but its row and events.
     void take_artifacts(Database& database, const std::string& id);
     void end_cancelled(Database& database, const std::string& id, proto::UnixMillis now);
+    // What the webhook of a job that has just ended is to be sent, if it has one.
+    void add_delivery(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
     // Everything, or what was made and not what the job works on.
     enum class Unlinked : std::uint8_t { kAll, kMade };
@@ -148,12 +164,14 @@ class SqliteStore final : public JobStore, public EventLog, public ExampleStore 
     // Only the writer's thread uses these.
     std::set<std::string> touched_;              // jobs whose listeners are told after the commit
     std::vector<std::string> unlinked_digests_;  // files to look at after the commit
+    bool has_new_deliveries_ = false;            // told of after the commit
 
     std::mutex readers_mutex_;
     std::vector<std::unique_ptr<Database>> idle_readers_;
 
     std::mutex listeners_mutex_;
     ListenerMap listeners_;
+    std::function<void()> on_delivery_;  // guarded by listeners_mutex_
 
     std::unique_ptr<Writer> writer_;  // last: its thread uses all of the above
 };

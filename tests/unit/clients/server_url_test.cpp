@@ -12,17 +12,28 @@ TEST(ServerUrl, ReadsHostPortAndPrefix) {
     EXPECT_EQ(*parse_server_url("http://[fe80::1]"), (ServerUrl{"fe80::1", "80", ""}));
 }
 
+TEST(ServerUrl, ReadsHttps) {
+    EXPECT_EQ(
+        *parse_server_url("https://example.org"), (ServerUrl{"example.org", "443", "", true})
+    );
+    EXPECT_EQ(*parse_server_url("https://[::1]:80/x"), (ServerUrl{"::1", "80", "/x", true}));
+    EXPECT_EQ(parse_server_url("https://a:443")->authority(), "a");
+    EXPECT_EQ(parse_server_url("https://a:80")->authority(), "a:80");
+}
+
 TEST(ServerUrl, WritesTheHostHeader) {
     EXPECT_EQ((ServerUrl{"127.0.0.1", "8080", ""}.authority()), "127.0.0.1:8080");
     EXPECT_EQ((ServerUrl{"example.org", "80", "/x"}.authority()), "example.org");
     EXPECT_EQ((ServerUrl{"::1", "8080", ""}.authority()), "[::1]:8080");
 }
 
-TEST(ServerUrl, RefusesWhatIsNoPlainHttpServer) {
+TEST(ServerUrl, RefusesWhatIsNoHttpServer) {
     for (const char* const text :
          {"",
           "127.0.0.1:8080",
-          "https://example.org",
+          "https//example.org",
+          "HTTPS://example.org",
+          "https://",
           "http://",
           "http://:80",
           "http://host:",

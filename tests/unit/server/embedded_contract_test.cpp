@@ -31,6 +31,9 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Embedded, ExampleContract, testing::ValuesIn(embedded_settings()), name_of
 );
+INSTANTIATE_TEST_SUITE_P(
+    Embedded, DeliveryContract, testing::ValuesIn(embedded_settings()), name_of
+);
 
 }  // namespace
 

@@ -38,6 +38,8 @@ class EmbeddedStore final : public StoreUnderTest {
 
     ExampleStore& examples() override { return *store_; }
 
+    DeliveryStore& deliveries() override { return *store_; }
+
     void reopen() override {
         store_.reset();
         open();

@@ -86,20 +86,25 @@ TEST_F(SqliteStoreFiles, ADirectoryThatCannotBeMadeIsAnError) {
 
 TEST_F(SqliteStoreFiles, TablesOfANewerFormAreRefused) {
     value(value(open())->submit(new_job("a"), kNoLimit));
-    execute("UPDATE meta SET value = 5 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 6 WHERE key = 'schema'");
     for (int i = 0; i < 2; ++i) {
         const auto opened = open();
         ASSERT_FALSE(opened);
         EXPECT_EQ(opened.error().code, StoreErrorCode::kConflict);
         EXPECT_NE(opened.error().message.find("newer version"), std::string::npos);
-        EXPECT_NE(opened.error().message.find("form 5"), std::string::npos);
+        EXPECT_NE(opened.error().message.find("form 6"), std::string::npos);
     }
     // Nothing was changed in it.
-    execute("UPDATE meta SET value = 4 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 5 WHERE key = 'schema'");
     EXPECT_TRUE(value(open())->find("a"));
 }
 
-// From the newest form back to the third, which knew no owners.
+// From the newest form back to the fourth, which knew no webhooks.
+constexpr const char* kUndoFifthForm =
+    "DROP TABLE delivery; ALTER TABLE job DROP COLUMN webhook;"
+    "UPDATE meta SET value = 4 WHERE key = 'schema';";
+
+// From there back to the third, which knew no owners.
 constexpr const char* kUndoFourthForm =
     "DROP INDEX job_key; DROP INDEX job_queue; DROP INDEX job_running; DROP INDEX job_owner;"
     "DROP TABLE flow; DROP TABLE example_owner; DELETE FROM meta WHERE key = 'turn';"
@@ -111,6 +116,19 @@ constexpr const char* kUndoFourthForm =
     "CREATE INDEX job_running ON job (ordinal) WHERE state = 1;"
     "UPDATE meta SET value = 3 WHERE key = 'schema';";
 
+TEST_F(SqliteStoreFiles, JobsOfTheFourthFormHaveNoWebhooks) {
+    value(value(open())->submit(new_job("a"), kNoLimit));
+    execute(kUndoFifthForm);
+    const auto store = value(open());
+    value(store->cancel("a", kNow));
+    EXPECT_TRUE(value(store->due_deliveries(kNow, 1, 10)).items.empty());
+    NewJob job = new_job("b");
+    job.webhook = "https://example.com/hook";
+    value(store->submit(job, kNoLimit));
+    value(store->cancel("b", kNow));
+    EXPECT_EQ(value(store->due_deliveries(kNow, 1, 10)).items.size(), 1U);
+}
+
 TEST_F(SqliteStoreFiles, TablesOfTheThirdFormAreNobodys) {
     {
         const auto store = value(open());
@@ -119,6 +137,7 @@ TEST_F(SqliteStoreFiles, TablesOfTheThirdFormAreNobodys) {
         const auto pin = value(store->artifacts().put("text"));
         value(store->add_example({"x", "", pin->digest()}, "", 10));
     }
+    execute(kUndoFifthForm);
     execute(kUndoFourthForm);
     const auto store = value(open());
     EXPECT_EQ(value(store->find_key("", "key", "hash"))->id, "a");
@@ -135,6 +154,7 @@ TEST_F(SqliteStoreFiles, TablesOfTheFirstFormAreBroughtForward) {
         value(store->submit(new_job("b"), kNoLimit));
         value(append(*store, value(store->claim(kNow, {}))->lease, {block_event(0)}));
     }
+    execute(kUndoFifthForm);
     execute(kUndoFourthForm);
     execute(
         "ALTER TABLE job DROP COLUMN version_base; DROP TABLE checkpoint;"
@@ -165,6 +185,7 @@ TEST_F(SqliteStoreFiles, TablesOfTheSecondFormKeepTheirCheckpoints) {
         progress.checkpoint = JobCheckpoint{0, 1, "1", "labels"};
         value(append(*store, value(store->claim(kNow, {}))->lease, {block_event(0)}, progress));
     }
+    execute(kUndoFifthForm);
     execute(kUndoFourthForm);
     execute(
         "ALTER TABLE job DROP COLUMN version_base; ALTER TABLE checkpoint DROP COLUMN tally;"

@@ -4,6 +4,7 @@
 // suite below run on them (INSTANTIATE_TEST_SUITE_P in a file of its own).
 
 #include "server/store/artifact_store.h"
+#include "server/store/delivery_store.h"
 #include "server/store/event_log.h"
 #include "server/store/job_store.h"
 
@@ -37,6 +38,7 @@ class StoreUnderTest {
     virtual EventLog& events() = 0;
     virtual ArtifactStore& artifacts() = 0;
     virtual ExampleStore& examples() = 0;
+    virtual DeliveryStore& deliveries() = 0;
     // Closes the store and opens it again. No lease, pin or subscription may be in use.
     virtual void reopen() = 0;
 };
@@ -117,6 +119,8 @@ class StoreSuite : public testing::TestWithParam<StoreSetting> {
 
     [[nodiscard]] ExampleStore& examples() { return store_->examples(); }
 
+    [[nodiscard]] DeliveryStore& deliveries() { return store_->deliveries(); }
+
     // The end of a step: a setting may open the store again here. As reopen().
     void between_steps();
 
@@ -158,5 +162,7 @@ class EventContract : public StoreSuite {};
 class ArtifactContract : public StoreSuite {};
 
 class ExampleContract : public StoreSuite {};
+
+class DeliveryContract : public StoreSuite {};
 
 }  // namespace modelsynth::server
