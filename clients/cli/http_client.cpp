@@ -99,7 +99,13 @@ class Connection {
         error_code is_name;
         static_cast<void>(net::ip::make_address(server_.host, is_name));
         if (is_name) {
-            SSL_set_tlsext_host_name(tls_->native_handle(), server_.host.c_str());
+            // As SSL_set_tlsext_host_name, whose cast is of C.
+            SSL_ctrl(
+                tls_->native_handle(),
+                SSL_CTRL_SET_TLSEXT_HOSTNAME,
+                TLSEXT_NAMETYPE_host_name,
+                const_cast<char*>(server_.host.c_str())
+            );
         }
         tls_->set_verify_callback(net::ssl::host_name_verification(server_.host));
         return wait(kConnectMax, [&](auto done) {

@@ -49,7 +49,7 @@ constexpr std::string_view kTlsHandshake = "\x16\x03";
 // To one that takes a port of TLS for a plain one.
 constexpr std::string_view kSpeakTls =
     "HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Type: text/plain\r\n"
-    "Content-Length: 39\r\n\r\nThis port speaks HTTPS. Use https://...\n";
+    "Content-Length: 40\r\n\r\nThis port speaks HTTPS. Use https://...\n";
 
 // One request as it comes in, and what becomes of the connection after it.
 struct Exchange {

@@ -81,10 +81,8 @@ def test_a_large_model_arrives_whole(server):
     assert int.from_bytes(model.body[8:12], "little") == len(model.body)
 
 
-def test_a_connection_is_kept_and_says_http_1_1(server):
-    context = ssl.create_default_context(cafile=None, cadata=None)
-    context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE
+def test_a_connection_is_kept_and_says_http_1_1(server, certificate):
+    context = certificate.client_context()
     context.set_alpn_protocols(["h2", "http/1.1"])
     with connect(server, context) as stream:
         assert stream.selected_alpn_protocol() == "http/1.1"
@@ -235,6 +233,7 @@ def test_a_slow_handshake_has_a_deadline(server):
     assert 1 < time.monotonic() - begun < 15
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # that is why
 @pytest.mark.parametrize("limit", ["old", "h2"])
 def test_what_is_not_spoken_is_refused(server, certificate, limit):
     context = certificate.client_context()
