@@ -17,6 +17,28 @@ std::size_t count_fields(const Request& request, std::string_view name) {
     ));
 }
 
+// Whether it is a host and perhaps a port (RFC 9112 3.2); empty is allowed. Commas, which a name
+// might have, are not: they are what joins two fields to one.
+bool is_authority(std::string_view text) {
+    static constexpr std::string_view kDigits = "0123456789";
+    static constexpr std::string_view kAddress = "0123456789abcdefABCDEF:.";
+    static constexpr std::string_view kName =
+        "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ-._~%!$&'()*+;=";
+    const bool is_address = text.starts_with('[');
+    const std::size_t end = is_address ? text.find(']') : text.find(':');
+    if (is_address && end == std::string_view::npos) {
+        return false;
+    }
+    const std::string_view host =
+        is_address ? text.substr(1, end - 1) : text.substr(0, std::min(end, text.size()));
+    if (host.find_first_not_of(is_address ? kAddress : kName) != std::string_view::npos) {
+        return false;
+    }
+    const std::string_view rest = text.substr(std::min(is_address ? end + 1 : end, text.size()));
+    return rest.empty() ||
+           (rest.front() == ':' && rest.find_first_not_of(kDigits, 1) == std::string_view::npos);
+}
+
 }  // namespace
 
 std::optional<proto::Problem> check_raw_head(std::string_view head) {
@@ -44,6 +66,9 @@ std::optional<proto::Problem> check_framing(const Request& request, unsigned ver
     const std::size_t hosts = count_fields(request, "host");
     if (hosts > 1 || (hosts == 0 && version == 11)) {
         return make_problem("malformed-request", "a request names exactly one Host");
+    }
+    if (hosts == 1 && !is_authority(*request.header("host"))) {
+        return make_problem("malformed-request", "Host must be a name or an address, and a port");
     }
     const auto coding = request.header("transfer-encoding");
     if (coding && (*coding != "chunked" || count_fields(request, "transfer-encoding") > 1)) {

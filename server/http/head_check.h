@@ -14,7 +14,7 @@ namespace modelsynth::server {
 // empty line. Nothing: fine so far.
 [[nodiscard]] std::optional<proto::Problem> check_raw_head(std::string_view head);
 
-// What a parsed head must hold before its body is looked at: exactly one Host, a
+// What a parsed head must hold before its body is looked at: exactly one Host, a valid one, a
 // Transfer-Encoding of nothing but `chunked` and only in HTTP/1.1, at most one Content-Length.
 // Any other coding would leave it open where the body ends and the next request begins.
 // `version`: 10 or 11. Sets nothing. A problem means that the connection is closed.

@@ -1,6 +1,7 @@
 #include "server/http/message.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace modelsynth::server {
 
@@ -38,6 +39,18 @@ bool decode(std::string_view text, bool plus_is_space, std::string& decoded) {
         }
     }
     return true;
+}
+
+// Schemes are of any case (RFC 3986 3.1).
+bool is_absolute(std::string_view target) {
+    static constexpr std::string_view kScheme = "http://";
+    return std::equal(
+        kScheme.begin(),
+        kScheme.end(),
+        target.begin(),
+        target.begin() + static_cast<std::ptrdiff_t>(std::min(target.size(), kScheme.size())),
+        [](char scheme, char c) { return scheme == (c >= 'A' && c <= 'Z' ? c + 32 : c); }
+    );
 }
 
 }  // namespace
@@ -81,14 +94,18 @@ Response problem_response(const proto::Problem& problem, const Request& request)
 }
 
 bool parse_target(std::string_view target, Request& request) {
-    if (target.starts_with("http://")) {  // the absolute form names the same resource
-        const std::size_t slash = target.find('/', 7);
-        if (slash == 7 || target.size() == 7) {
-            return false;  // of no host
+    request.target.clear();
+    if (is_absolute(target)) {  // which names the same resource
+        const std::size_t end = std::min(target.find_first_of("/?", 7), target.size());
+        const std::string_view authority = target.substr(7, end - 7);
+        if (authority.empty() || authority.find('@') != std::string_view::npos) {
+            return false;  // of no host, or a password that nobody should send
         }
-        target = slash == std::string_view::npos ? std::string_view("/") : target.substr(slash);
+        target.remove_prefix(end);
+        request.target = target.starts_with('/') ? "" : "/";
     }
-    request.target = std::string(target);
+    request.target += target;
+    target = request.target;
     if (target.empty() || target.front() != '/') {
         return false;
     }

@@ -14,7 +14,9 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <pthread.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
@@ -61,6 +63,24 @@ struct HttpServer::State {
 };
 
 namespace {
+
+// The calling thread has this name meanwhile, and so have the threads that it makes: those of the
+// library's pool cannot be named otherwise.
+class ThreadName {
+  public:
+    explicit ThreadName(const char* name) {
+        ::pthread_getname_np(::pthread_self(), before_.data(), before_.size());
+        ::pthread_setname_np(::pthread_self(), name);
+    }
+
+    ThreadName(const ThreadName&) = delete;
+    ThreadName& operator=(const ThreadName&) = delete;
+
+    ~ThreadName() { ::pthread_setname_np(::pthread_self(), before_.data()); }
+
+  private:
+    std::array<char, 16> before_ = {};
+};
 
 void log_failure(const std::shared_ptr<spdlog::logger>& log, const std::exception_ptr& failure) {
     if (!failure) {
@@ -119,8 +139,10 @@ HttpServer::HttpServer(
     TlsIdentity& tls,
     std::shared_ptr<spdlog::logger> log,
     HttpObserver& observer
-)
-    : state_(std::make_unique<State>(config, api, tls, std::move(log), observer)) {}
+) {
+    const ThreadName inherited("pool");
+    state_ = std::make_unique<State>(config, api, tls, std::move(log), observer);
+}
 
 HttpServer::~HttpServer() {
     state_->io.stop();

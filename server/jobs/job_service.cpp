@@ -7,6 +7,7 @@
 #include "server/store/artifact_names.h"
 #include "solver/registry/estimate.h"
 
+#include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -92,7 +93,10 @@ JobService::JobService(
       capacity_(capacity_of(config)),
       observer_(observer) {
     for (std::size_t i = 0; i < config_.workers; ++i) {
-        workers_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+        workers_.emplace_back([this](const std::stop_token& stop) {
+            ::pthread_setname_np(::pthread_self(), "worker");
+            work(stop);
+        });
     }
     housekeeper_ = std::jthread([this](const std::stop_token& stop) { keep_house(stop); });
 }

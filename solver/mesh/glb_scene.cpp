@@ -172,6 +172,9 @@ class SceneReader {
 
 }  // namespace
 
+// Not defaulted, which clang does where Extra is still incomplete.
+bool operator==(const Extra& a, const Extra& b) { return a.value == b.value; }
+
 const Extra* Extra::find(std::string_view name) const {
     const auto* members = std::get_if<Members>(&value);
     if (members == nullptr) {

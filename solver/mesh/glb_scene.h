@@ -26,7 +26,7 @@ struct Extra {
     // The member of that name; null when there is none, or when this is no object.
     [[nodiscard]] const Extra* find(std::string_view name) const;
 
-    friend bool operator==(const Extra&, const Extra&) = default;
+    friend bool operator==(const Extra& a, const Extra& b);
 };
 
 // A node that has a mesh.

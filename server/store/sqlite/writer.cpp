@@ -1,5 +1,7 @@
 #include "server/store/sqlite/writer.h"
 
+#include <pthread.h>
+
 #include <chrono>
 #include <vector>
 
@@ -30,7 +32,10 @@ Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& ope
 }  // namespace
 
 Writer::Writer(const std::string& path) : database_(path, Database::Mode::kWriter) {
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this] {
+        ::pthread_setname_np(::pthread_self(), "store");
+        run();
+    });
 }
 
 Writer::~Writer() { close(); }
