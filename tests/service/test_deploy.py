@@ -55,9 +55,10 @@ def test_options_that_are_named_exist(options):
     assert {name.lower().replace("_", "-") for name in variables if name != "TESTS"} <= options
 
 
-def test_metrics_that_are_named_exist(server):
-    server.wait(server.submit(size=(8, 4, 8))["id"])
-    served = set(re.findall(r"^# TYPE (\w+)", server.get("/metrics").body.decode(), re.MULTILINE))
+def test_metrics_that_are_named_exist():
+    # Of a server that runs only those are told that something has happened to.
+    source = (ROOT / "server/ops/metrics.cpp").read_text()
+    served = set(re.findall(r'"(modelsynth_\w+)"', source))
     assert "modelsynth_jobs_total" in served
     for path in ("prometheus/alerts.yml", "grafana/modelsynth.json"):
         text = (DEPLOY / path).read_text()

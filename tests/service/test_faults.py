@@ -73,7 +73,7 @@ def fill(directory):
 
 @contextlib.contextmanager
 def server_on(disk):
-    server = Server(disk / "data").start()
+    server = Server(disk / "data", "--disk-free-min", MIB).start()
     try:
         yield server
     finally:
