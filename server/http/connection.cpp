@@ -472,6 +472,12 @@ class Connection {
     }
 
     net::awaitable<bool> respond(Response response, Exchange& exchange, Parser& parser) {
+        if (!std::holds_alternative<std::string>(response.body) &&
+            !std::holds_alternative<FileBody>(response.body)) {
+            // No request comes after it, and a stream may be silent for days.
+            buffer_.clear();
+            buffer_.shrink_to_fit();
+        }
         if (auto* upgrade = std::get_if<SocketUpgrade>(&response.body)) {
             handed_over_ = true;
             exchange.answer.status = response.status;
