@@ -35,8 +35,8 @@ struct Job {
     std::string result;                           // JSON text; empty: none
     std::string error;                            // JSON text; empty: none
     std::optional<std::uint64_t> queue_position;  // of queued jobs, 0 is next
-    std::uint64_t head = 0;  // newest seq of its log at the time it was read, shown as `seq`
-    std::string owner;       // name of the key that it was submitted with; not shown
+    std::uint64_t head = 0;   // newest seq of its log at the time it was read, shown as `seq`
+    std::string owner;        // name of the key that it was submitted with; not shown
     std::string traceparent;  // of the request it came with (W3C Trace Context); not shown
 };
 
