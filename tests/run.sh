@@ -104,7 +104,8 @@ if ! $quick; then
   [ $built -eq 0 ] && {
     unit asan "${programs[@]}"
     beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
-      tests/service/test_multi_stream.py tests/service/test_examples_api.py tests/service/test_crash.py
+      tests/service/test_multi_stream.py tests/service/test_examples_api.py \
+      tests/service/test_crash.py tests/service/test_tls.py tests/service/test_access.py
   }
   build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
