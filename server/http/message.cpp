@@ -24,6 +24,9 @@ int hex_value(char c) {
 
 bool decode(std::string_view text, bool plus_is_space, std::string& decoded) {
     for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\0') {
+            return false;
+        }
         if (text[i] == '+' && plus_is_space) {
             decoded += ' ';
         } else if (text[i] != '%') {

@@ -595,6 +595,15 @@ TEST(Fuzz, RequestTargetsAndHeads) {
     });
 }
 
+// Found by tests/fuzz/targets/request_head.cpp: only an escaped one was refused.
+TEST(Fuzz, TargetsWithNulBytes) {
+    using namespace std::string_literals;
+    for (const std::string& target : {"/a\0b"s, "/a%00b"s, "/a?b\0=c"s, "/a?b=c\0"s}) {
+        server::Request request;
+        EXPECT_FALSE(server::parse_target(target, request));
+    }
+}
+
 TEST(Fuzz, AcceptedCodings) {
     fuzz("gzip;q=0.875, identity ; q=0.25,br;q=1.000 , *;q=0", 17, [](const std::string& text) {
         const auto accepted = server::parse_accept_encoding(text);
