@@ -6,6 +6,7 @@
 #include <openssl/x509err.h>
 
 #include <string_view>
+#include <system_error>
 
 namespace modelsynth::server {
 
@@ -18,9 +19,12 @@ constexpr const char* kCiphers =
     "ECDHE-ECDSA-AES128-GCM-SHA256:ECDHE-RSA-AES128-GCM-SHA256:ECDHE-ECDSA-AES256-GCM-SHA384:"
     "ECDHE-RSA-AES256-GCM-SHA384:ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305";
 
-// What went wrong last within OpenSSL.
+// What went wrong first within OpenSSL.
 std::string reason() {
-    const unsigned long code = ERR_peek_last_error();
+    const unsigned long code = ERR_peek_error();
+    if (ERR_SYSTEM_ERROR(code)) {
+        return std::generic_category().message(ERR_GET_REASON(code));
+    }
     const char* text = ERR_reason_error_string(code);
     return text == nullptr ? "it cannot be read" : text;
 }

@@ -21,7 +21,7 @@ namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
 
-constexpr auto kToken = net::as_tuple(net::use_awaitable);
+constexpr auto kTransportToken = net::as_tuple(net::use_awaitable);
 // For a WebSocket's client to end its side, once both have said so.
 constexpr auto kTearDownMax = std::chrono::seconds(5);
 
@@ -97,7 +97,7 @@ class TlsLayers final : public Transport::Layers {
 };
 
 // Operations of layers, to be awaited.
-using Token = std::decay_t<decltype(kToken)>;
+using TransportToken = std::decay_t<decltype(kTransportToken)>;
 
 struct StartHandshake {
     template <class Handler>
@@ -130,12 +130,14 @@ struct StartRawRead {
 
 template <class Start>
 auto ended(Start start, Transport::Layers& layers) {
-    return net::async_initiate<const Token, void(error_code)>(start, kToken, &layers);
+    return net::async_initiate<const TransportToken, void(error_code)>(
+        start, kTransportToken, &layers
+    );
 }
 
 auto read_raw(Transport::Layers& layers, net::mutable_buffer buffer) {
-    return net::async_initiate<const Token, void(error_code, std::size_t)>(
-        StartRawRead(), kToken, &layers, Transport::ReadPieces(buffer)
+    return net::async_initiate<const TransportToken, void(error_code, std::size_t)>(
+        StartRawRead(), kTransportToken, &layers, Transport::ReadPieces(buffer)
     );
 }
 
@@ -186,7 +188,7 @@ net::awaitable<void> Transport::end(std::chrono::seconds most, bool drain) {
 
 net::awaitable<void> Transport::write_raw(std::string_view bytes) {
     const auto buffer = net::buffer(bytes.data(), bytes.size());
-    co_await net::async_write(socket(), buffer, kToken);
+    co_await net::async_write(socket(), buffer, kTransportToken);
 }
 
 void Transport::close() { close_socket(*layers_); }

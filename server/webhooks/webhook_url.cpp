@@ -50,6 +50,12 @@ std::optional<std::string> find_url_fault(const std::string& url, const WebhookR
     if (!is_text) {
         return "must be of printable ASCII, all else escaped";
     }
+    // The library takes one slash for two, and three.
+    const std::size_t colon = url.find(':');
+    if (colon == std::string::npos || !url.substr(colon).starts_with("://") ||
+        url.substr(colon).starts_with(":///")) {
+        return "is not a URL like https://example.com/hook";
+    }
     const Url parsed(curl_url(), &curl_url_cleanup);
     switch (curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), CURLU_DISALLOW_USER)) {
         case CURLUE_OK:

@@ -295,7 +295,7 @@ def test_files_that_do_not_fit_are_refused(tmp_path, folder):
     for certificate, key, words in [
             (one.certificate, other.key, "does not fit"), (text, one.key, "the TLS certificate"),
             (one.certificate, text, "the TLS key"), (one.certificate, closed.key, "the TLS key"),
-            (tmp_path / "none", one.key, "none"), (one.certificate, None, "--tls-key"),
+            (tmp_path / "none", one.key, "No such file"), (one.certificate, None, "--tls-key"),
             (None, one.key, "--tls-certificate")]:
         options = ["--tls-certificate", certificate] if certificate else []
         options += ["--tls-key", key] if key else []
