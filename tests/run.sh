@@ -91,7 +91,7 @@ step format
 must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 
 programs=(solver_tests thread_tests wire_tests cli_tests property_tests fuzz_tests golden_tests
-  store_tests jobs_tests ops_tests)
+  store_tests jobs_tests ops_tests webhook_tests)
 build release all && {
   unit release "${programs[@]}"
   beside service release tests/layout tests/service
