@@ -38,8 +38,8 @@ class Logging {
     [[nodiscard]] std::uint64_t dropped_count() const;
 
   private:
-    std::shared_ptr<spdlog::details::thread_pool> pool_;
     std::shared_ptr<spdlog::logger> logger_;
+    std::shared_ptr<spdlog::details::thread_pool> pool_;  // last: its thread writes by the logger
 };
 
 // A line as it is written, with its end: what a formatter of that format makes of a payload.
