@@ -73,7 +73,9 @@ bool is_host_allowed(std::string_view host, const BrowserRules& rules) {
                kSetApart.end(),
                [&dotted](std::string_view suffix) { return dotted.ends_with(suffix); }
            ) ||
-           std::find(rules.hosts.begin(), rules.hosts.end(), name) != rules.hosts.end();
+           std::any_of(rules.hosts.begin(), rules.hosts.end(), [&name](const std::string& listed) {
+               return lower(listed) == name;
+           });
 }
 
 bool is_origin_allowed(std::string_view origin, std::string_view host, const BrowserRules& rules) {

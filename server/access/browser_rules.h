@@ -10,7 +10,7 @@ namespace modelsynth::server {
 
 struct BrowserRules {
     std::vector<std::string> origins;  // as browsers send them, scheme://host[:port], or "*"
-    std::vector<std::string> hosts;    // names without a port, in lower case
+    std::vector<std::string> hosts;    // names without a port
 };
 
 // Whether a Host header may name this server. A page can have its own name point here and then

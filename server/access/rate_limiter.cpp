@@ -16,6 +16,7 @@ RateLimiter::Verdict RateLimiter::take(
     bucket.filled = std::max(bucket.filled, now);
     Verdict verdict;
     verdict.quota = static_cast<std::uint64_t>(full);
+    verdict.window_seconds = static_cast<std::uint64_t>(std::ceil(full / rate));
     verdict.is_granted = bucket.tokens >= 1;
     if (verdict.is_granted) {
         bucket.tokens -= 1;

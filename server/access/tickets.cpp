@@ -1,5 +1,7 @@
 #include "server/access/tickets.h"
 
+#include "server/store/artifact_store.h"
+
 #include <openssl/rand.h>
 
 #include <array>
@@ -15,13 +17,7 @@ std::string random_text() {
     if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
         throw std::runtime_error("the machine gives no random numbers");
     }
-    static constexpr const char* kDigits = "0123456789abcdef";
-    std::string text;
-    for (const unsigned char byte : bytes) {
-        text += kDigits[byte >> 4];
-        text += kDigits[byte & 15];
-    }
-    return text;
+    return sha256_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace

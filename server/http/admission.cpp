@@ -156,23 +156,25 @@ std::optional<Response> Admission::admit(Request& request, const Need& need) {
     }
     if (key->rate) {
         const auto verdict = rates_.take(key->name, *key->rate, RateLimiter::Clock::now());
-        const std::string reset = std::to_string(verdict.reset_seconds);
         request.answer_fields.emplace_back(
-            "RateLimit-Policy", "\"burst\";q=" + std::to_string(verdict.quota) + ";w=1"
+            "RateLimit-Policy",
+            "\"burst\";q=" + std::to_string(verdict.quota) +
+                ";w=" + std::to_string(verdict.window_seconds)
         );
         request.answer_fields.emplace_back(
-            "RateLimit", "\"burst\";r=" + std::to_string(verdict.remaining) + ";t=" + reset
+            "RateLimit",
+            "\"burst\";r=" + std::to_string(verdict.remaining) +
+                ";t=" + std::to_string(verdict.reset_seconds)
         );
         if (!verdict.is_granted) {
-            Response response = problem_response(
+            return problem_response(
                 make_problem(
                     "too-fast",
                     "the key has a burst of " + std::to_string(verdict.quota) + " requests"
                 ),
-                request
+                request,
+                verdict.reset_seconds
             );
-            response.headers.emplace_back("Retry-After", reset);
-            return response;
         }
     }
     if (!may(*key, *need.scope)) {

@@ -1,12 +1,11 @@
 #include "server/log/event_line.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <iterator>
 
 namespace modelsynth::server {
 
@@ -51,77 +50,15 @@ bool is_number(std::string_view text) {
     return i == text.size();
 }
 
-// The character that the text begins with, and how many bytes it has; what is no UTF-8 counts as
-// U+FFFD, byte by byte.
-struct CodePoint {
-    std::uint32_t value = 0xfffd;
-    std::size_t byte_count = 1;
-};
-
-CodePoint first_code_point(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned lead = byte(0);
-    const std::size_t count = lead < 0x80             ? 1
-                              : (lead & 0xe0) == 0xc0 ? 2
-                              : (lead & 0xf0) == 0xe0 ? 3
-                              : (lead & 0xf8) == 0xf0 ? 4
-                                                      : 0;
-    if (count == 0 || count > text.size()) {
-        return {};
-    }
-    if (count == 1) {
-        return {lead, 1};
-    }
-    std::uint32_t value = lead & (0x7fU >> count);
-    for (std::size_t i = 1; i < count; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) {
-            return {};
-        }
-        value = (value << 6) | (byte(i) & 0x3f);
-    }
-    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-    const bool is_surrogate = value >= 0xd800 && value < 0xe000;
-    if (value < kLeast[count] || value > 0x10ffff || is_surrogate) {
-        return {};
-    }
-    return {value, count};
+// As a JSON string, of ASCII alone; what is no UTF-8 becomes U+FFFD.
+std::string quoted(std::string_view text) {
+    using Json = nlohmann::json;
+    return Json(text).dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-void append_escape(std::string& out, std::uint32_t value) {
-    auto end = std::back_inserter(out);
-    if (value >= 0x10000) {
-        value -= 0x10000;
-        fmt::format_to(end, "\\u{:04x}\\u{:04x}", 0xd800 + (value >> 10), 0xdc00 + (value & 0x3ff));
-    } else {
-        fmt::format_to(end, "\\u{:04x}", value);
-    }
-}
-
-// Inside the quotes of a JSON string.
-std::string escaped(std::string_view text) {
-    std::string out;
-    while (!text.empty()) {
-        const CodePoint point = first_code_point(text);
-        if (point.value == '"' || point.value == '\\') {
-            out += '\\';
-            out += static_cast<char>(point.value);
-        } else if (point.value == '\n') {
-            out += "\\n";
-        } else if (point.value >= 0x20 && point.value < 0x7f) {
-            out += static_cast<char>(point.value);
-        } else {
-            append_escape(out, point.value);
-        }
-        text.remove_prefix(point.byte_count);
-    }
-    return out;
-}
-
-std::string quoted(std::string_view text) { return '"' + escaped(text) + '"'; }
-
-// Of the escape that the text begins with; 0 when it is none of escaped().
+// Of the escape that the text begins with; 0 when it is none of quoted().
 std::size_t escape_length(std::string_view text) {
-    if (text.size() >= 2 && std::string_view("\"\\n").find(text[1]) != std::string_view::npos) {
+    if (text.size() >= 2 && std::string_view("\"\\bfnrt").find(text[1]) != std::string_view::npos) {
         return 2;
     }
     const bool is_code =
@@ -219,17 +156,13 @@ std::string json_members_of(std::string_view line) {
 }
 
 std::string printable(std::string_view text) {
-    std::string out;
-    while (!text.empty()) {
-        const CodePoint point = first_code_point(text);
-        if (point.value >= 0x20 && point.value < 0x7f) {
-            out += static_cast<char>(point.value);
-        } else {
-            append_escape(out, point.value);
-        }
-        text.remove_prefix(point.byte_count);
+    const bool is_printable =
+        std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+    if (is_printable) {
+        return std::string(text);
     }
-    return out;
+    const std::string literal = quoted(text);
+    return literal.substr(1, literal.size() - 2);
 }
 
 void log_event(

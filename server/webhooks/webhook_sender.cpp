@@ -113,7 +113,7 @@ class WebhookSender::Loop {
         } catch (const std::exception& error) {
             const std::string what = error.what();
             log_event(*log_, level::err, "webhooks pause", {{"what", what}});
-            look_at_ = proto::now_millis() + kStoreTroubleMs;
+            trouble_until_ = proto::now_millis() + kStoreTroubleMs;
         }
         const UnixMillis pause = std::clamp<UnixMillis>(look_at_ - proto::now_millis(), 0, 1000);
         const bool has_work = has_news_ && can_begin();

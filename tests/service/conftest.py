@@ -24,7 +24,9 @@ class Answer:
 
     def __init__(self, status, headers, body):
         self.status = status
+        headers = list(headers)
         self.headers = {name.lower(): value for name, value in headers}
+        assert len(self.headers) == len(headers), f"a field stands twice: {headers}"
         self.body = body
 
     def json(self):

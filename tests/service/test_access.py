@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 
+from api_document import ApiDocument
 from checks import ENDLESS, assert_problem, job_request, wait_until
 from conftest import BIN_DIR, Server
 from raw_http import Wire
@@ -194,15 +195,17 @@ def test_whoever_asks_too_fast_is_told_when_to_come_back(tmp_path):
     try:
         first = server.get("/v1/jobs", headers=bearer("ann"))
         assert first.status == 200
-        assert first.headers["ratelimit-policy"] == '"burst";q=1;w=1'
+        assert first.headers["ratelimit-policy"] == '"burst";q=1;w=1000'
         assert first.headers["ratelimit"].startswith('"burst";r=0;t=')
         second = server.get("/v1/jobs", headers=bearer("ann"))
         assert_problem(second, 429, "too-fast")
+        openapi = ApiDocument(server.get("/openapi.json").json())
+        openapi.check_answer("GET", "/v1/jobs", second)
         assert 900 < int(second.headers["retry-after"]) <= 1000
         assert second.headers["ratelimit"] == f'"burst";r=0;t={second.headers["retry-after"]}'
         assert server.get("/healthz", headers=bearer("ann")).status == 200
         assert server.get("/v1/jobs", headers=bearer("bob")).headers["ratelimit-policy"] == \
-            '"burst";q=4;w=1'
+            '"burst";q=4;w=2'
     finally:
         assert server.stop() == 0
 
@@ -348,7 +351,7 @@ def test_names_that_anybody_could_point_here_are_not(server, host):
 
 
 def test_further_names_and_origins_are_given_by_the_operator(tmp_path):
-    server = Server(tmp_path / "data", "--allow-host", "models.attacker.com", "--allow-origin",
+    server = Server(tmp_path / "data", "--allow-host", "Models.attacker.com", "--allow-origin",
                     "https://studio.mygame.com").start()
     try:
         assert server.get("/v1/jobs", headers={"Host": "models.attacker.com:80"}).status == 200
@@ -401,3 +404,16 @@ def test_a_browser_asks_before_it_asks(server):
     assert all(name in allowed for name in ("authorization", "content-type", "idempotency-key"))
     refused = server.request("OPTIONS", "/v1/jobs", headers={**ask, "Origin": "https://attacker.com"})
     assert refused.status == 405 and "access-control-allow-origin" not in refused.headers
+
+
+def test_refusals_are_as_documented(keyed, server):
+    openapi = ApiDocument(server.get("/openapi.json").json())
+    attacker = {"Origin": "https://attacker.com"}
+    for status, path, answer in [
+            (401, "/v1/jobs", keyed.get("/v1/jobs")),
+            (401, "/v1/limits", keyed.get("/v1/limits", headers={"Authorization": "Bearer x"})),
+            (403, "/metrics", keyed.get("/metrics", headers=bearer("ann"))),
+            (403, "/v1/jobs/{id}/events", server.get("/v1/jobs/x/events", headers=attacker)),
+            (421, "/v1/jobs", server.get("/v1/jobs", headers={"Host": "attacker.com"}))]:
+        assert answer.status == status
+        openapi.check_answer("GET", path, answer)
