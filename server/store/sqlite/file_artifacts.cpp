@@ -187,10 +187,25 @@ Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::pin(const std::string
     return pin;
 }
 
-bool FileArtifacts::sync_directories(const std::string& digest) const {
+bool FileArtifacts::sync_directories(const std::string& digest) {
     const fs::path inner = path_of(digest).parent_path();
-    return sync_directory(inner) && sync_directory(inner.parent_path()) &&
-           sync_directory(directory_);
+    if (!sync_directory(inner)) {
+        return false;
+    }
+    // The way to it needs that once only: directories stay.
+    const std::string name = inner.lexically_relative(directory_).string();
+    {
+        const std::lock_guard lock(mutex_);
+        if (synced_ways_.contains(name)) {
+            return true;
+        }
+    }
+    if (!sync_directory(inner.parent_path()) || !sync_directory(directory_)) {
+        return false;
+    }
+    const std::lock_guard lock(mutex_);
+    synced_ways_.insert(name);
+    return true;
 }
 
 Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_view bytes) {

@@ -8,6 +8,8 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace modelsynth::server {
@@ -48,7 +50,7 @@ class FileArtifacts final : public ArtifactStore {
     class FilePin;
 
     [[nodiscard]] std::filesystem::path path_of(const std::string& digest) const;
-    [[nodiscard]] bool sync_directories(const std::string& digest) const;
+    [[nodiscard]] bool sync_directories(const std::string& digest);
     Stored<void> write_file(const std::string& digest, std::string_view bytes);
     void unpin(const std::string& digest);
 
@@ -58,6 +60,7 @@ class FileArtifacts final : public ArtifactStore {
     std::atomic<std::uint64_t> used_bytes_ = 0;  // changed with mutex_ held
     std::map<std::string, std::size_t> pins_;
     std::uint64_t next_temporary_ = 0;
+    std::set<std::string> synced_ways_;  // inner directories whose names are on disk
     std::function<void(const std::string&)> on_unpinned_;
 };
 

@@ -50,10 +50,13 @@ Job job_of(const Statement& row) {
 }
 
 std::uint64_t turn_of_next(Database& database, const std::string& owner, std::int32_t priority) {
+    // By these indexes, or it may look at all jobs that the owner ever had.
     Statement row = database.prepare(
         "SELECT MAX((SELECT value FROM meta WHERE key = 'turn'), "
-        "COALESCE((SELECT MAX(turn + cost) FROM job WHERE state IN (0, 1) AND owner = ?1 AND "
-        "priority = ?2), 0))"
+        "COALESCE((SELECT MAX(turn + cost) FROM job INDEXED BY job_queue WHERE state = 0 AND "
+        "owner = ?1 AND priority = ?2), 0), "
+        "COALESCE((SELECT MAX(turn + cost) FROM job INDEXED BY job_running WHERE state = 1 AND "
+        "owner = ?1 AND priority = ?2), 0))"
     );
     row.bind(std::string_view(owner)).bind(std::int64_t{priority}).step();
     return row.natural(0);
@@ -78,16 +81,20 @@ std::uint64_t queue_position(Database& database, const std::string& id, UnixMill
     return before.natural(0);
 }
 
-Stored<Job> find_job(Database& database, const std::string& id) {
+Stored<Job> read_job(Database& database, const std::string& id) {
     Statement row =
         database.prepare(std::string("SELECT ") + kJobColumns + " FROM job WHERE id = ?");
     row.bind(std::string_view(id));
     if (!row.step()) {
         return no_job(id);
     }
-    Job job = job_of(row);
-    if (job.state == JobState::kQueued) {
-        job.queue_position = queue_position(database, id, proto::now_millis());
+    return job_of(row);
+}
+
+Stored<Job> find_job(Database& database, const std::string& id) {
+    auto job = read_job(database, id);
+    if (job && job->state == JobState::kQueued) {
+        job->queue_position = queue_position(database, id, proto::now_millis());
     }
     return job;
 }

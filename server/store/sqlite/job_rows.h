@@ -45,7 +45,8 @@ inline constexpr const char* kLevel =
     Database& database, const std::string& id, proto::UnixMillis now
 );
 
-// Fails: kNotFound.
+// Without its place in the queue. Fails: kNotFound.
+[[nodiscard]] Stored<proto::Job> read_job(Database& database, const std::string& id);
 [[nodiscard]] Stored<proto::Job> find_job(Database& database, const std::string& id);
 
 [[nodiscard]] std::optional<JobCheckpoint> find_checkpoint(

@@ -118,14 +118,16 @@ void SqliteStore::append(
     writer_->post(
         {[this, lease, events = std::move(events), progress, first_seq](Database& database
          ) -> Stored<void> {
-             if (!holds(database, lease)) {
-                 return lease_lost(lease);
-             }
              bool is_new_version = false;
              {
-                 Statement row =
-                     database.prepare("SELECT next_seq, solver_version FROM job WHERE id = ?");
-                 row.bind(std::string_view(lease.job_id)).step();
+                 Statement row = database.prepare(
+                     "SELECT next_seq, solver_version FROM job "
+                     "WHERE id = ? AND token = ? AND state = 1"
+                 );
+                 row.bind(std::string_view(lease.job_id)).bind(lease.token);
+                 if (!row.step()) {
+                     return lease_lost(lease);
+                 }
                  *first_seq = row.natural(0);
                  is_new_version = row.text(1) != progress.solver_version;
              }
@@ -151,16 +153,18 @@ void SqliteStore::append(
                  return linked;
              }
              bool has_block = false;
+             std::uint64_t next_seq = *first_seq;
              for (const NewEvent& event : events) {
-                 append_event(database, lease.job_id, event);
+                 insert_event(database, lease.job_id, next_seq++, event);
                  has_block = has_block || event.type == "block";
              }
              database
                  .prepare(
-                     "UPDATE job SET blocks_done = ?, blocks_total = ?, solved_seconds = ?, "
-                     "fruitless_claims = CASE WHEN ? THEN 0 ELSE "
+                     "UPDATE job SET next_seq = ?, blocks_done = ?, blocks_total = ?, "
+                     "solved_seconds = ?, fruitless_claims = CASE WHEN ? THEN 0 ELSE "
                      "fruitless_claims END WHERE id = ?"
                  )
+                 .bind(next_seq)
                  .bind(std::uint64_t{progress.blocks_done})
                  .bind(std::uint64_t{progress.blocks_total})
                  .bind(progress.solved_seconds)

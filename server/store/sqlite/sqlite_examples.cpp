@@ -103,9 +103,12 @@ Stored<std::vector<ExampleStore::Row>> SqliteStore::list_examples(const OwnerFil
 Stored<void> SqliteStore::erase_example(const std::string& id, const OwnerFilter& owner) {
     return writer_->call<void>([&](Database& database) -> Stored<void> {
         const auto digest = digest_for(database, id, owner);
+        const std::string uses =
+            std::string(" AND example_id = ?1") + (owner ? " AND owner = ?2" : "");
+        // By these indexes, or it looks at all jobs that ever were.
         Statement users = database.prepare(
-            std::string("SELECT 1 FROM job WHERE state IN (0, 1) AND example_id = ?") +
-            (owner ? " AND owner = ?" : "")
+            "SELECT 1 FROM job INDEXED BY job_queue WHERE state = 0" + uses +
+            " UNION ALL SELECT 1 FROM job INDEXED BY job_running WHERE state = 1" + uses
         );
         users.bind(std::string_view(id));
         if (owner) {

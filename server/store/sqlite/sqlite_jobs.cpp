@@ -78,8 +78,12 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limi
             }
         }
         {
-            Statement unfinished =
-                database.prepare("SELECT COUNT(*) FROM job WHERE state IN (0, 1) AND owner = ?");
+            // By these indexes, or it looks at all jobs that the owner ever had.
+            Statement unfinished = database.prepare(
+                "SELECT (SELECT COUNT(*) FROM job INDEXED BY job_queue WHERE state = 0 AND "
+                "owner = ?1) + (SELECT COUNT(*) FROM job INDEXED BY job_running WHERE state = 1 "
+                "AND owner = ?1)"
+            );
             unfinished.bind(std::string_view(job.owner)).step();
             if (unfinished.natural(0) >= limits.unfinished_max) {
                 return failure(
@@ -122,7 +126,7 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limi
         }
         const std::uint64_t position = queue_position(database, job.id, job.created);
         append_event(database, job.id, {"queued", proto::queued_fields(position), job.created});
-        auto stored = find_job(database, job.id);
+        auto stored = read_job(database, job.id);
         if (!stored) {
             return tl::unexpected(std::move(stored.error()));
         }

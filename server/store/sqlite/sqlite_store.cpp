@@ -135,18 +135,28 @@ void SqliteStore::after_commit(Database& database) {
 }
 
 void SqliteStore::append_event(Database& database, const std::string& id, const NewEvent& event) {
-    database
-        .prepare(
-            "INSERT INTO event (job_id, seq, type, time, fields) "
-            "SELECT id, next_seq, ?2, ?3, ?4 FROM job WHERE id = ?1"
-        )
+    std::uint64_t seq = 0;
+    {
+        Statement row = database.prepare("SELECT next_seq FROM job WHERE id = ?");
+        row.bind(std::string_view(id)).step();
+        seq = row.natural(0);
+    }
+    insert_event(database, id, seq, event);
+    database.prepare("UPDATE job SET next_seq = ? WHERE id = ?")
+        .bind(seq + 1)
         .bind(std::string_view(id))
+        .run();
+}
+
+void SqliteStore::insert_event(
+    Database& database, const std::string& id, std::uint64_t seq, const NewEvent& event
+) {
+    database.prepare("INSERT INTO event (job_id, seq, type, time, fields) VALUES (?, ?, ?, ?, ?)")
+        .bind(std::string_view(id))
+        .bind(seq)
         .bind(std::string_view(event.type))
         .bind(event.time)
         .bind(std::string_view(event.fields))
-        .run();
-    database.prepare("UPDATE job SET next_seq = next_seq + 1 WHERE id = ?")
-        .bind(std::string_view(id))
         .run();
     touched_.insert(id);
 }

@@ -122,6 +122,10 @@ class SqliteStore final : public JobStore,
     // What the webhook of a job that has just ended is to be sent, if it has one.
     void add_delivery(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
+    // With a number that the caller counts on from.
+    void insert_event(
+        Database& database, const std::string& id, std::uint64_t seq, const NewEvent& event
+    );
     // Everything, or what was made and not what the job works on.
     enum class Unlinked : std::uint8_t { kAll, kMade };
     void unlink_artifacts(Database& database, const std::string& id, Unlinked which);
@@ -145,9 +149,9 @@ class SqliteStore final : public JobStore,
                 reader = std::make_unique<Database>(path_, Database::Mode::kReader);
             }
             // One snapshot for all statements of the read.
-            reader->execute("BEGIN");
+            reader->prepare("BEGIN").run();
             Stored<T> result = read(*reader);
-            reader->execute("COMMIT");
+            reader->prepare("COMMIT").run();
             const std::lock_guard lock(readers_mutex_);
             idle_readers_.push_back(std::move(reader));
             return result;

@@ -15,7 +15,7 @@ tl::unexpected<StoreError> unavailable(const std::string& why) {
 
 // Applies one operation, or leaves no trace of it.
 Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& operation) {
-    database.execute("SAVEPOINT operation");
+    database.prepare("SAVEPOINT operation").run();
     Stored<void> outcome;
     try {
         outcome = operation.apply(database);
@@ -23,9 +23,9 @@ Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& ope
         outcome = unavailable(error.what());
     }
     if (!outcome) {
-        database.execute("ROLLBACK TO operation");
+        database.prepare("ROLLBACK TO operation").run();
     }
-    database.execute("RELEASE operation");
+    database.prepare("RELEASE operation").run();
     return outcome;
 }
 
@@ -98,11 +98,11 @@ void Writer::commit(std::deque<Operation>& batch) {
     const auto begun = std::chrono::steady_clock::now();
     std::vector<Stored<void>> outcomes;
     try {
-        database_.execute("BEGIN IMMEDIATE");
+        database_.prepare("BEGIN IMMEDIATE").run();
         for (const Operation& operation : batch) {
             outcomes.push_back(apply_in_savepoint(database_, operation));
         }
-        database_.execute("COMMIT");
+        database_.prepare("COMMIT").run();
     } catch (const SqliteError& error) {
         try {
             database_.execute("ROLLBACK");
