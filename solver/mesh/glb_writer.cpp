@@ -153,10 +153,27 @@ std::vector<bool> used_meshes(const Scene& scene) {
     return used;
 }
 
+// About what write_primitive() adds to the buffer.
+std::size_t buffer_bytes(const Primitive& primitive) {
+    constexpr std::size_t kColorBytes = 8;
+    const std::size_t vertex_bytes =
+        2 * sizeof(Vec3) + kColorBytes + (primitive.texture_coordinates.empty() ? 0 : sizeof(Vec2));
+    const bool is_wide = primitive.positions.size() > 65535;
+    return primitive.positions.size() * vertex_bytes +
+           padded(primitive.indices.size() * (is_wide ? 4 : 2));
+}
+
 // Writes the meshes in use; returns their numbers in the file, -1 for the rest.
 std::vector<int> write_meshes(Document& document) {
     const Kit& kit = *document.scene.kit;
     const std::vector<bool> used = used_meshes(document.scene);
+    std::size_t bytes = 0;
+    for (std::size_t i = 0; i < kit.meshes.size(); ++i) {
+        for (const Primitive& primitive : kit.meshes[i].primitives) {
+            bytes += used[i] ? buffer_bytes(primitive) : 0;
+        }
+    }
+    document.buffer.reserve(bytes);
     std::vector<int> numbers(kit.meshes.size(), -1);
     for (std::size_t i = 0; i < kit.meshes.size(); ++i) {
         if (!used[i]) {
@@ -389,9 +406,9 @@ Result<std::string> assemble(Document& document, const GlbOptions& options) {
     while (!json.empty() && json.back() != '}') {
         json.pop_back();  // a final line break
     }
-    json.insert(1, inserted);
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size();
+    // tinygltf's text begins with a brace, after which comes what is ours.
+    const std::size_t json_bytes = padded(json.size() + inserted.size());
+    std::size_t total = kHeaderBytes + kChunkHeaderBytes + json_bytes;
     total += binary.empty() ? 0 : kChunkHeaderBytes + binary.size();
     if (total > options.bytes_max) {
         return too_large(options.bytes_max);
@@ -401,13 +418,15 @@ Result<std::string> assemble(Document& document, const GlbOptions& options) {
     glb += "glTF";
     append_u32(glb, 2);
     append_u32(glb, total);
-    append_u32(glb, json.size());
-    glb += "JSON";
-    glb += json;
+    append_u32(glb, json_bytes);
+    glb += "JSON{";
+    glb += inserted;
+    glb.append(json, 1);
+    glb.append(json_bytes - json.size() - inserted.size(), ' ');
     if (!binary.empty()) {
         append_u32(glb, binary.size());
         glb.append("BIN\0", 4);
-        glb.append(binary.begin(), binary.end());
+        glb.append(reinterpret_cast<const char*>(binary.data()), binary.size());
     }
     return glb;
 }

@@ -16,6 +16,9 @@
 
 namespace modelsynth {
 
+// Chunks and views begin at multiples of four bytes.
+[[nodiscard]] constexpr std::size_t padded(std::size_t length) { return (length + 3) / 4 * 4; }
+
 // Bytes of the binary chunk and the tinygltf views and accessors over them.
 class GltfBuffer {
   public:
@@ -113,12 +116,15 @@ class GltfBuffer {
 
     [[nodiscard]] std::size_t bytes() const { return data().size(); }
 
+    // Makes room for so much more, since to grow bit by bit is to copy and to touch fresh pages.
+    void reserve(std::size_t more) { data().reserve(data().size() + more); }
+
   private:
     int add_view(const void* values, std::size_t length, int target = 0) {
         const std::size_t offset = data().size();
         const auto* bytes = static_cast<const unsigned char*>(values);
         data().insert(data().end(), bytes, bytes + length);
-        data().resize((data().size() + 3) / 4 * 4);
+        data().resize(padded(data().size()));
         tinygltf::BufferView view;
         view.buffer = 0;
         view.byteOffset = offset;

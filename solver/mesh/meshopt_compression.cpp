@@ -1,6 +1,7 @@
 #include "solver/mesh/meshopt_compression.h"
 
 #include "solver/core/result.h"
+#include "solver/mesh/gltf_buffer.h"
 
 #include <meshoptimizer.h>
 
@@ -13,8 +14,6 @@ namespace modelsynth {
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-std::size_t aligned(std::size_t size) { return (size + 3) / 4 * 4; }
 
 // The format that the extension prescribes, whatever a version of the library likes best. Set once:
 // the library keeps it in variables without a lock.
@@ -103,7 +102,7 @@ class Compression {
     std::size_t append(const unsigned char* bytes, std::size_t count) {
         const std::size_t at = binary_.size();
         binary_.insert(binary_.end(), bytes, bytes + count);
-        binary_.resize(aligned(binary_.size()));
+        binary_.resize(padded(binary_.size()));
         return at;
     }
 
@@ -136,7 +135,7 @@ class Compression {
         check(!encoded.empty(), "a bound of meshoptimizer's was too small");
         views_ += '{';
         place(1, fallback_bytes_, view.byteLength);
-        fallback_bytes_ = aligned(fallback_bytes_ + view.byteLength);
+        fallback_bytes_ = padded(fallback_bytes_ + view.byteLength);
         if (view.target != 0) {
             views_ += ',';
             field("target", static_cast<std::size_t>(view.target));
