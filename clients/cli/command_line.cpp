@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -85,16 +86,25 @@ void add_job(CLI::App& command, std::string& job_id) {
     command.add_option("JOB", job_id, "Id of the job")->required()->check(refuse_empty);
 }
 
-CLI::Option* add_profile(CLI::App& command, std::string& profile) {
-    return command
-        .add_option(
-            "--profile",
-            profile,
-            "nodes: core glTF, a node for each piece (default); instanced: small, needs "
-            "EXT_mesh_gpu_instancing; merged: few meshes"
-        )
-        ->check(CLI::IsMember({"nodes", "instanced", "merged"}))
-        ->type_name("NAME");
+std::array<CLI::Option*, 2> add_form(CLI::App& command, ModelForm& form) {
+    return {
+        command
+            .add_option(
+                "--profile",
+                form.profile,
+                "nodes: core glTF, a node for each piece (default); instanced: small, needs "
+                "EXT_mesh_gpu_instancing; merged: few meshes"
+            )
+            ->check(CLI::IsMember({"nodes", "instanced", "merged"}))
+            ->type_name("NAME"),
+        command
+            .add_option(
+                "--compression",
+                form.compression,
+                "none (default), or meshopt: smaller, needs EXT_meshopt_compression"
+            )
+            ->check(CLI::IsMember({"none", "meshopt"}))
+            ->type_name("NAME")};
 }
 
 CLI::Option* add_output(CLI::App& command, std::string& output) {
@@ -134,7 +144,7 @@ CLI::Option* add_request(CLI::App& command, RequestOptions& request) {
     const auto add = [&](const char* name, auto& value, const char* description) {
         return command.add_option(name, value, description)->excludes(whole);
     };
-    add("--solver", request.solver, "Name of the solver; default: discrete");
+    add("--solver", request.solver, "Name of the solver; default: that of the example");
     add("--box", request.box, "Cells that are made anew, the second corner exclusive")
         ->type_name("X,Y,Z:X,Y,Z")
         ->needs(from);
@@ -169,7 +179,9 @@ void add_job_commands(CLI::App& app, Options& options) {
         ->check(refuse_control);
     submit.add_flag("--follow", options.submit.is_followed, "Show the progress until the end");
     CLI::Option* const output = add_output(submit, options.submit.output);
-    add_profile(submit, options.submit.profile)->needs(output);
+    for (CLI::Option* const form : add_form(submit, options.submit.form)) {
+        form->needs(output);
+    }
 
     CLI::App& follow = *add_command(
         app,
@@ -185,7 +197,7 @@ void add_job_commands(CLI::App& app, Options& options) {
     CLI::App& fetch = *add_command(app, options.invocation, "fetch", "Download a job's model");
     add_job(fetch, options.fetch.job_id);
     add_output(fetch, options.fetch.output)->required();
-    CLI::Option* const profile = add_profile(fetch, options.fetch.profile);
+    const auto form = add_form(fetch, options.fetch.form);
     CLI::Option* const preview =
         fetch.add_flag("--preview", options.fetch.is_preview, "The model as far as it is now");
     fetch.add_option("--alternative", options.fetch.alternative, "Which of several models, from 0")
@@ -193,7 +205,8 @@ void add_job_commands(CLI::App& app, Options& options) {
         ->type_name("K")
         ->excludes(preview);
     fetch.add_flag("--labels", options.fetch.is_labels, "The labels as JSON instead")
-        ->excludes(profile)
+        ->excludes(form[0])
+        ->excludes(form[1])
         ->excludes(preview);
 
     CLI::App& run = *add_command(
@@ -201,7 +214,7 @@ void add_job_commands(CLI::App& app, Options& options) {
     );
     CLI::Option* const from = add_request(run, options.run.request);
     add_output(run, options.run.output)->required();
-    add_profile(run, options.run.profile);
+    add_form(run, options.run.form);
     run.add_flag("--local", options.run.is_local, "Solve here, without a server")->excludes(from);
 }
 

@@ -88,8 +88,11 @@ std::string artifact_target(const FetchOptions& options) {
     if (options.is_labels) {
         return job + "/labels.json" + query;
     }
-    if (!options.profile.empty()) {
-        add("profile", options.profile);
+    if (!options.form.profile.empty()) {
+        add("profile", options.form.profile);
+    }
+    if (!options.form.compression.empty()) {
+        add("compression", options.form.compression);
     }
     return job + (options.is_preview ? "/preview.glb" : "/model.glb") + query;
 }
@@ -172,7 +175,7 @@ Outcome<void> submit(const HttpClient& client, const SubmitOptions& options, boo
     if (!is_fetched && !options.is_followed) {
         return {};
     }
-    const FetchOptions wanted{job->id, options.output, options.profile};
+    const FetchOptions wanted{job->id, options.output, options.form};
     return finish_job(client, *job, wanted, as_json, as_json).map([&](const RunReport& report) {
         if (is_fetched) {
             print_report(report, as_json);
@@ -215,7 +218,7 @@ Outcome<void> run_on_server(const HttpClient& client, const RunOptions& options,
     if (!as_json) {
         note("job " + job->id);  // for going on by hand, should this be interrupted
     }
-    const FetchOptions wanted{job->id, options.output, options.profile};
+    const FetchOptions wanted{job->id, options.output, options.form};
     return finish_job(client, *job, wanted, false, as_json).map([&](const RunReport& report) {
         print_report(report, as_json);
     });

@@ -15,7 +15,7 @@ struct SubmitOptions {
     std::string idempotency_key;
     bool is_followed = false;
     std::string output;  // empty: the model is not fetched
-    std::string profile;
+    ModelForm form;
 };
 
 struct FollowOptions {
@@ -26,7 +26,7 @@ struct FollowOptions {
 struct FetchOptions {
     std::string job_id;
     std::string output;
-    std::string profile;
+    ModelForm form;
     bool is_preview = false;
     bool is_labels = false;
     std::optional<std::uint64_t> alternative = {};

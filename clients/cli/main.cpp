@@ -66,8 +66,14 @@ Outcome<void> carry_out(const Invocation& invocation) {
     });
 }
 
-Outcome<void> carry_out_or_catch(const Invocation& invocation) {
+Outcome<void> carry_out_or_catch(Invocation invocation) {
     try {
+        const auto complete = [](auto& options) {
+            if constexpr (requires { options.request; }) {
+                complete_request(options.request);
+            }
+        };
+        std::visit(complete, invocation.command);
         return carry_out(invocation);
     } catch (const std::exception& error) {
         return tl::unexpected(Failure{ExitCode::kFailed, error.what()});

@@ -33,6 +33,14 @@ Outcome<std::string> example_text(const std::string& example) {
     return read_example_file(example);
 }
 
+// The solver that an example says it is for, or the one that most are for: what it really is, the
+// server finds out.
+std::string solver_of_example(const std::string& text) {
+    const Json example = Json::parse(text, nullptr, false);
+    const auto kind = example.is_object() ? example.find("kind") : example.end();
+    return kind != example.end() && kind->is_string() ? kind->get<std::string>() : "discrete";
+}
+
 // The object's text with a field put before the others.
 std::string with_field(const std::string& object, const std::string& field) {
     const std::size_t open = object.find('{');
@@ -125,15 +133,19 @@ Outcome<std::string> make_request_body(const RequestOptions& options) {
     const auto add = [&body](const char* name, const std::string& text) {
         body += std::string(body.size() > 1 ? "," : "") + "\"" + name + "\":" + text;
     };
-    if (!options.solver.empty() || options.from.empty()) {
-        add("solver", quote(options.solver.empty() ? "discrete" : options.solver));
-    }
+    std::string example;
     if (!options.example.empty()) {
-        const auto example = example_text(options.example);
-        if (!example) {
-            return example;
+        auto text = example_text(options.example);
+        if (!text) {
+            return text;
         }
-        add("example", *example);
+        example = std::move(*text);
+    }
+    if (!options.solver.empty() || options.from.empty()) {
+        add("solver", quote(options.solver.empty() ? solver_of_example(example) : options.solver));
+    }
+    if (!example.empty()) {
+        add("example", example);
     }
     if (!options.from.empty()) {
         const auto from = from_text(options);

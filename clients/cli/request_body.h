@@ -14,7 +14,7 @@ namespace modelsynth::cli {
 // A job request as the command line gives it; what is absent is left to the server.
 struct RequestOptions {
     std::string request_file;  // the whole request, "-" for standard input; all else is then empty
-    std::string solver;        // empty: discrete, or that of the job to start from
+    std::string solver;        // empty: that of the example or of the job to start from
     std::string example;       // an id, or a file: its name ends in .json or has a slash
     std::string from;          // a finished job to start from; it tells what is not given
     std::string box;           // of the new model, made anew: 0,0,0:8,10,8

@@ -141,7 +141,7 @@ class LocalRun {
   private:
     struct Made {
         std::string glb;
-        std::string identity;  // by which models are equal: the file in the default profile
+        std::string identity;  // by which models are equal: the file in the default form
     };
 
     Result<Made> make(std::uint64_t seed) {
@@ -162,9 +162,13 @@ class LocalRun {
     [[nodiscard]] Result<Made> draw(const Model& model) const {
         const Scene scene = whole_scene(model);
         GlbOptions wanted;
-        wanted.profile = profile_of(options_.profile);
+        wanted.profile = profile_of(options_.form.profile);
+        wanted.compression = options_.form.compression == "meshopt" ? GlbCompression::kMeshopt
+                                                                    : GlbCompression::kNone;
         return write_glb(scene, wanted).and_then([&](std::string glb) -> Result<Made> {
-            if (!request_.alternatives || wanted.profile == GlbProfile::kNodes) {
+            const bool is_default =
+                wanted.profile == GlbProfile::kNodes && wanted.compression == GlbCompression::kNone;
+            if (!request_.alternatives || is_default) {
                 std::string identity = request_.alternatives ? glb : "";
                 return Made{std::move(glb), std::move(identity)};
             }
@@ -200,6 +204,14 @@ class LocalRun {
 };
 
 }  // namespace
+
+void complete_request(RequestOptions& request) {
+    if (request.solver.empty() && request.from.empty() && request.request_file.empty()) {
+        if (const auto example = examples::find(request.example)) {
+            request.solver = solver_of(*example);
+        }
+    }
+}
 
 Outcome<void> run_local(const RunOptions& options, bool as_json) {
     if (auto usable = OutputFile::check(options.output); !usable) {

@@ -35,7 +35,8 @@ class RequestReader {
     // The request last read, as the protocol's parser has it. Once.
     [[nodiscard]] Message release() { return parser_->release(); }
 
-    // Frees what was kept to read into. For a connection that reads no further request.
+    // Frees what was kept to read into. For a connection that reads no further request, but may
+    // still release() the last one.
     void close();
 
   private:

@@ -153,27 +153,19 @@ std::vector<bool> used_meshes(const Scene& scene) {
     return used;
 }
 
-// About what write_primitive() adds to the buffer.
-std::size_t buffer_bytes(const Primitive& primitive) {
-    constexpr std::size_t kColorBytes = 8;
-    const std::size_t vertex_bytes =
-        2 * sizeof(Vec3) + kColorBytes + (primitive.texture_coordinates.empty() ? 0 : sizeof(Vec2));
-    const bool is_wide = primitive.positions.size() > 65535;
-    return primitive.positions.size() * vertex_bytes +
-           padded(primitive.indices.size() * (is_wide ? 4 : 2));
-}
-
 // Writes the meshes in use; returns their numbers in the file, -1 for the rest.
 std::vector<int> write_meshes(Document& document) {
     const Kit& kit = *document.scene.kit;
     const std::vector<bool> used = used_meshes(document.scene);
-    std::size_t bytes = 0;
+    std::size_t vertices = 0;
+    std::size_t indices = 0;
     for (std::size_t i = 0; i < kit.meshes.size(); ++i) {
         for (const Primitive& primitive : kit.meshes[i].primitives) {
-            bytes += used[i] ? buffer_bytes(primitive) : 0;
+            vertices += used[i] ? primitive.positions.size() : 0;
+            indices += used[i] ? primitive.indices.size() : 0;
         }
     }
-    document.buffer.reserve(bytes);
+    document.buffer.expect(vertices, indices);
     std::vector<int> numbers(kit.meshes.size(), -1);
     for (std::size_t i = 0; i < kit.meshes.size(); ++i) {
         if (!used[i]) {
@@ -361,27 +353,30 @@ tl::unexpected<Error> too_large(std::size_t bytes_max) {
         {}});
 }
 
-// Takes the buffer out of the model. Returns the binary chunk; what the JSON is to tell of it
-// beyond what tinygltf writes goes to `inserted`.
-std::vector<unsigned char> take_binary(
-    tinygltf::Model& model, GlbCompression compression, std::string& inserted
+// The binary chunk. What the JSON is to tell of it beyond what tinygltf writes goes to `inserted`.
+std::vector<unsigned char> make_binary(
+    Document& document, GlbCompression compression, std::string& inserted
 ) {
-    std::vector<unsigned char> binary;
-    if (compression == GlbCompression::kMeshopt && !model.bufferViews.empty()) {
-        CompressedBuffers compressed = compress_buffers(model);
-        binary = std::move(compressed.binary);
+    tinygltf::Model& model = document.model;
+    const auto& parts = document.buffer.finish();
+    if (compression == GlbCompression::kMeshopt && !parts.empty()) {
+        CompressedBuffers compressed = compress_buffers(model, parts);
         inserted += "\"buffers\":" + compressed.buffers + ",";
         inserted += "\"bufferViews\":" + compressed.buffer_views + ",";
         model.bufferViews.clear();
         model.extensionsUsed.emplace_back(kMeshoptExtension);
         model.extensionsRequired.emplace_back(kMeshoptExtension);
-    } else {
-        binary = std::move(model.buffers[0].data);
-        if (!binary.empty()) {
-            inserted += "\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}],";
-        }
+        return std::move(compressed.binary);
     }
-    model.buffers.clear();
+    std::vector<unsigned char> binary;
+    if (!parts.empty()) {
+        binary.reserve(model.bufferViews.back().byteOffset + padded(parts.back().size()));
+        for (const auto& part : parts) {
+            binary.insert(binary.end(), part.begin(), part.end());
+            binary.resize(padded(binary.size()));
+        }
+        inserted += "\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}],";
+    }
     return binary;
 }
 
@@ -398,8 +393,7 @@ Result<std::string> assemble(Document& document, const GlbOptions& options) {
     if (document.nodes.count() > 0) {
         inserted += "\"nodes\":[" + document.nodes.take() + "],";
     }
-    const std::vector<unsigned char> binary =
-        take_binary(document.model, options.compression, inserted);
+    const std::vector<unsigned char> binary = make_binary(document, options.compression, inserted);
     std::ostringstream stream;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model, stream, false, false);
     std::string json = std::move(stream).str();

@@ -19,31 +19,30 @@ namespace modelsynth {
 // Chunks and views begin at multiples of four bytes.
 [[nodiscard]] constexpr std::size_t padded(std::size_t length) { return (length + 3) / 4 * 4; }
 
-// Bytes of the binary chunk and the tinygltf views and accessors over them.
+// The bytes of the binary chunk, and the tinygltf views and accessors over them. What is of one
+// kind, all positions say, shares a view: a view for each accessor would weigh more in the JSON
+// than small meshes do in numbers.
 class GltfBuffer {
   public:
-    explicit GltfBuffer(tinygltf::Model& model) : model_(model) { model_.buffers.emplace_back(); }
+    explicit GltfBuffer(tinygltf::Model& model) : model_(model) { views_.fill(-1); }
+
+    // How many there will be at least, since to grow bit by bit is to copy. Before the first.
+    void expect(std::size_t vertices, std::size_t indices) {
+        expected_ = {vertices, vertices, vertices, 0, indices, 0, 0};
+    }
 
     int positions(const std::vector<Vec3>& values) {
-        const int accessor =
-            add(values.data(), values.size(), sizeof(Vec3), TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+        const int accessor = add(kPositions, values.data(), values.size());
         set_bounds(accessor, values);
         return accessor;
     }
 
     int normals(const std::vector<Vec3>& values) {
-        const int accessor =
-            add(values.data(), values.size(), sizeof(Vec3), TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-        return accessor;
+        return add(kNormals, values.data(), values.size());
     }
 
     int texture_coordinates(const std::vector<Vec2>& values) {
-        const int accessor =
-            add(values.data(), values.size(), sizeof(Vec2), TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
-        return accessor;
+        return add(kTextureCoordinates, values.data(), values.size());
     }
 
     // Vertex colours times the material's colour, RGB as RGBA in 16 bits each: some readers (VTK)
@@ -61,91 +60,117 @@ class GltfBuffer {
                 {part(color[0], base.r), part(color[1], base.g), part(color[2], base.b), 65535}
             );
         }
-        const int accessor = add(parts.data(), values.size(), 8, TINYGLTF_TARGET_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
+        const int accessor = add(kColors, parts.data(), values.size());
         model_.accessors.back().normalized = true;
         return accessor;
     }
 
     int indices(const std::vector<std::uint32_t>& values, std::size_t vertex_count) {
         if (vertex_count > 65535) {
-            const int accessor =
-                add(values.data(),
-                    values.size(),
-                    sizeof(std::uint32_t),
-                    TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-            describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
-            return accessor;
+            return add(kWideIndices, values.data(), values.size());
         }
         const std::vector<std::uint16_t> narrow(values.begin(), values.end());
-        const int accessor =
-            add(narrow.data(),
-                narrow.size(),
-                sizeof(std::uint16_t),
-                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        describe(accessor, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
-        return accessor;
+        return add(kIndices, narrow.data(), narrow.size());
+    }
+
+    // Instance attributes: no vertices, so their view has no target.
+    int translations(const std::vector<Vec3>& values) {
+        return add(kTranslations, values.data(), values.size());
     }
 
     // The number of the view, not of an accessor.
-    int image(const std::string& bytes) { return add_view(bytes.data(), bytes.size()); }
-
-    // Instance attributes: one view for all, without a target, since a view and bounds for each
-    // would weigh more than the numbers themselves. Call it last, and add nothing after it.
-    int translations(const std::vector<Vec3>& values) {
-        if (translations_view_ < 0) {
-            translations_view_ = static_cast<int>(model_.bufferViews.size());
-            tinygltf::BufferView view;
-            view.buffer = 0;
-            view.byteOffset = data().size();
-            model_.bufferViews.push_back(std::move(view));
-        }
-        auto& view = model_.bufferViews[static_cast<std::size_t>(translations_view_)];
-        tinygltf::Accessor accessor;
-        accessor.bufferView = translations_view_;
-        accessor.byteOffset = view.byteLength;
-        accessor.count = values.size();
-        accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-        accessor.type = TINYGLTF_TYPE_VEC3;
-        model_.accessors.push_back(std::move(accessor));
-        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-        data().insert(data().end(), bytes, bytes + values.size() * sizeof(Vec3));
-        view.byteLength += values.size() * sizeof(Vec3);
-        return static_cast<int>(model_.accessors.size()) - 1;
+    int image(const std::string& bytes) {
+        const int number = add_view();
+        parts_.back().assign(bytes.begin(), bytes.end());
+        total_ += bytes.size();
+        return number;
     }
 
-    [[nodiscard]] std::size_t bytes() const { return data().size(); }
+    [[nodiscard]] std::size_t bytes() const { return total_; }
 
-    // Makes room for so much more, since to grow bit by bit is to copy and to touch fresh pages.
-    void reserve(std::size_t more) { data().reserve(data().size() + more); }
+    // What each view holds, once its model is complete: puts the views one after the other.
+    const std::vector<std::vector<unsigned char>>& finish() {
+        std::size_t offset = 0;
+        for (std::size_t i = 0; i < parts_.size(); ++i) {
+            model_.bufferViews[i].byteOffset = offset;
+            model_.bufferViews[i].byteLength = parts_[i].size();
+            offset += padded(parts_[i].size());
+        }
+        return parts_;
+    }
 
   private:
-    int add_view(const void* values, std::size_t length, int target = 0) {
-        const std::size_t offset = data().size();
-        const auto* bytes = static_cast<const unsigned char*>(values);
-        data().insert(data().end(), bytes, bytes + length);
-        data().resize(padded(data().size()));
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = offset;
-        view.byteLength = length;
-        view.target = target;
-        model_.bufferViews.push_back(std::move(view));
-        return static_cast<int>(model_.bufferViews.size()) - 1;
+    enum Kind : std::size_t {
+        kPositions,
+        kNormals,
+        kColors,
+        kTextureCoordinates,
+        kIndices,
+        kWideIndices,
+        kTranslations,
+        kKinds
+    };
+
+    static constexpr std::array<std::size_t, kKinds> kStrides = {
+        sizeof(Vec3), sizeof(Vec3), 8, sizeof(Vec2), 2, 4, sizeof(Vec3)};
+    static constexpr std::array<int, kKinds> kTargets = {
+        TINYGLTF_TARGET_ARRAY_BUFFER,
+        TINYGLTF_TARGET_ARRAY_BUFFER,
+        TINYGLTF_TARGET_ARRAY_BUFFER,
+        TINYGLTF_TARGET_ARRAY_BUFFER,
+        TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
+        TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
+        0};
+    static constexpr std::array<int, kKinds> kComponents = {
+        TINYGLTF_COMPONENT_TYPE_FLOAT,
+        TINYGLTF_COMPONENT_TYPE_FLOAT,
+        TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+        TINYGLTF_COMPONENT_TYPE_FLOAT,
+        TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+        TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+        TINYGLTF_COMPONENT_TYPE_FLOAT};
+    static constexpr std::array<int, kKinds> kTypes = {
+        TINYGLTF_TYPE_VEC3,
+        TINYGLTF_TYPE_VEC3,
+        TINYGLTF_TYPE_VEC4,
+        TINYGLTF_TYPE_VEC2,
+        TINYGLTF_TYPE_SCALAR,
+        TINYGLTF_TYPE_SCALAR,
+        TINYGLTF_TYPE_VEC3};
+
+    int add_view() {
+        model_.bufferViews.emplace_back();
+        model_.bufferViews.back().buffer = 0;
+        parts_.emplace_back();
+        return static_cast<int>(parts_.size()) - 1;
     }
 
-    int add(const void* values, std::size_t count, std::size_t stride, int target) {
+    std::vector<unsigned char>& part(Kind kind) {
+        if (views_[kind] < 0) {
+            views_[kind] = add_view();
+            auto& view = model_.bufferViews.back();
+            view.target = kTargets[kind];
+            // glTF wants it of vertices that share a view, and nowhere else.
+            view.byteStride = view.target == TINYGLTF_TARGET_ARRAY_BUFFER ? kStrides[kind] : 0;
+            parts_.back().reserve(expected_[kind] * kStrides[kind]);
+        }
+        return parts_[static_cast<std::size_t>(views_[kind])];
+    }
+
+    int add(Kind kind, const void* values, std::size_t count) {
+        std::vector<unsigned char>& bytes = part(kind);
         tinygltf::Accessor accessor;
-        accessor.bufferView = add_view(values, count * stride, target);
+        accessor.bufferView = views_[kind];
+        accessor.byteOffset = bytes.size();
         accessor.count = count;
+        accessor.componentType = kComponents[kind];
+        accessor.type = kTypes[kind];
         model_.accessors.push_back(std::move(accessor));
+        const std::size_t length = count * kStrides[kind];
+        const auto* first = static_cast<const unsigned char*>(values);
+        bytes.insert(bytes.end(), first, first + length);
+        total_ += length;
         return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    void describe(int accessor, int component_type, int type) {
-        auto& described = model_.accessors[static_cast<std::size_t>(accessor)];
-        described.componentType = component_type;
-        described.type = type;
     }
 
     void set_bounds(int accessor, const std::vector<Vec3>& values) {
@@ -163,12 +188,11 @@ class GltfBuffer {
         described.maxValues = widen(high);
     }
 
-    [[nodiscard]] std::vector<unsigned char>& data() { return model_.buffers[0].data; }
-
-    [[nodiscard]] const std::vector<unsigned char>& data() const { return model_.buffers[0].data; }
-
     tinygltf::Model& model_;
-    int translations_view_ = -1;
+    std::vector<std::vector<unsigned char>> parts_;  // by the number of the view
+    std::array<int, kKinds> views_;                  // -1: none yet
+    std::array<std::size_t, kKinds> expected_ = {};
+    std::size_t total_ = 0;
 };
 
 }  // namespace modelsynth

@@ -63,8 +63,8 @@ Bytes encode_indices(const Content& content) {
 
 class Compression {
   public:
-    explicit Compression(const tinygltf::Model& model)
-        : model_(model), strides_(model.bufferViews.size()) {
+    Compression(const tinygltf::Model& model, const std::vector<Bytes>& parts)
+        : model_(model), parts_(parts), strides_(model.bufferViews.size()) {
         choose_format();
         for (const tinygltf::Accessor& accessor : model.accessors) {
             const int size =
@@ -81,9 +81,9 @@ class Compression {
         for (std::size_t i = 0; i < model_.bufferViews.size(); ++i) {
             views_ += i == 0 ? "[" : ",";
             if (strides_[i] == 0) {
-                copy(model_.bufferViews[i]);
+                copy(parts_[i]);
             } else {
-                compress(model_.bufferViews[i], strides_[i]);
+                compress(model_.bufferViews[i], parts_[i], strides_[i]);
             }
         }
         const std::string buffers = "[{\"byteLength\":" + std::to_string(binary_.size()) +
@@ -94,14 +94,10 @@ class Compression {
     }
 
   private:
-    [[nodiscard]] const unsigned char* bytes_of(const tinygltf::BufferView& view) const {
-        return model_.buffers.front().data.data() + view.byteOffset;
-    }
-
     // Where the bytes stand in the binary chunk.
-    std::size_t append(const unsigned char* bytes, std::size_t count) {
+    std::size_t append(const Bytes& bytes) {
         const std::size_t at = binary_.size();
-        binary_.insert(binary_.end(), bytes, bytes + count);
+        binary_.insert(binary_.end(), bytes.begin(), bytes.end());
         binary_.resize(padded(binary_.size()));
         return at;
     }
@@ -118,30 +114,31 @@ class Compression {
         field("byteLength", length);
     }
 
-    void copy(const tinygltf::BufferView& view) {
+    void copy(const Bytes& part) {
         views_ += '{';
-        place(0, append(bytes_of(view), view.byteLength), view.byteLength);
+        place(0, append(part), part.size());
         views_ += '}';
     }
 
-    void compress(const tinygltf::BufferView& view, std::size_t stride) {
-        check(
-            view.byteLength > 0 && view.byteLength % stride == 0,
-            "views are full and tightly packed"
-        );
-        const Content content = {bytes_of(view), stride, view.byteLength / stride};
+    void compress(const tinygltf::BufferView& view, const Bytes& part, std::size_t stride) {
+        check(!part.empty() && part.size() % stride == 0, "views are full and tightly packed");
+        const Content content = {part.data(), stride, part.size() / stride};
         const bool is_indices = view.target == TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
         const Bytes encoded = is_indices ? encode_indices(content) : encode_attributes(content);
         check(!encoded.empty(), "a bound of meshoptimizer's was too small");
         views_ += '{';
-        place(1, fallback_bytes_, view.byteLength);
-        fallback_bytes_ = padded(fallback_bytes_ + view.byteLength);
+        place(1, fallback_bytes_, part.size());
+        fallback_bytes_ = padded(fallback_bytes_ + part.size());
+        if (view.byteStride != 0) {
+            views_ += ',';
+            field("byteStride", view.byteStride);
+        }
         if (view.target != 0) {
             views_ += ',';
             field("target", static_cast<std::size_t>(view.target));
         }
         views_ += std::string(",\"extensions\":{\"") + kMeshoptExtension + "\":{";
-        place(0, append(encoded.data(), encoded.size()), encoded.size());
+        place(0, append(encoded), encoded.size());
         views_ += ',';
         field("byteStride", stride);
         views_ += std::string(",\"mode\":\"") + (is_indices ? "INDICES" : "ATTRIBUTES") + "\",";
@@ -150,6 +147,7 @@ class Compression {
     }
 
     const tinygltf::Model& model_;
+    const std::vector<Bytes>& parts_;
     std::vector<std::size_t> strides_;  // of what stands in each view; 0: no accessor reads it
     Bytes binary_;
     std::size_t fallback_bytes_ = 0;
@@ -158,8 +156,8 @@ class Compression {
 
 }  // namespace
 
-CompressedBuffers compress_buffers(const tinygltf::Model& model) {
-    return Compression(model).run();
+CompressedBuffers compress_buffers(const tinygltf::Model& model, const std::vector<Bytes>& parts) {
+    return Compression(model, parts).run();
 }
 
 }  // namespace modelsynth

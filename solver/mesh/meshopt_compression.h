@@ -22,9 +22,11 @@ struct CompressedBuffers {
 // reader that decodes it has every byte as it was. Views that no accessor reads, which are images,
 // stay as they are. The second buffer is the fallback buffer of the extension and has no bytes: a
 // reader without the extension cannot read the file, so the extension must be required.
-// Requires: one buffer, no empty view; what accessors read of a view is tightly packed, of one
-// size, a multiple of four bytes for attributes (checked).
+// `parts`: what each view holds. Requires: no empty part; what accessors read of a view is tightly
+// packed, of one size, a multiple of four bytes for attributes (checked).
 // Deterministic for one version of meshoptimizer. Thread-safe.
-[[nodiscard]] CompressedBuffers compress_buffers(const tinygltf::Model& model);
+[[nodiscard]] CompressedBuffers compress_buffers(
+    const tinygltf::Model& model, const std::vector<std::vector<unsigned char>>& parts
+);
 
 }  // namespace modelsynth

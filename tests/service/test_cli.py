@@ -13,6 +13,7 @@ import urllib.error
 import urllib.request
 
 import pytest
+from test_continuous import HUT
 
 ROOT = pathlib.Path(__file__).parents[2]
 BIN_DIR = pathlib.Path(os.environ.get("MODELSYNTH_BIN_DIR", ROOT / "build/release/bin"))
@@ -277,12 +278,25 @@ def test_an_unreachable_server_exits_with_3(arguments):
 # --- with a server
 
 
-def test_local_run_equals_the_server_in_every_profile(server, tmp_path):
-    for profile in ("nodes", "instanced", "merged"):
-        local, remote = tmp_path / "local.glb", tmp_path / "remote.glb"
-        succeed("run", "--local", *SMALL, "--profile", profile, "-o", local)
-        succeed("run", *SMALL, "--profile", profile, "-o", remote, server=server.url)
-        assert local.read_bytes() == remote.read_bytes(), profile
+@pytest.mark.parametrize("compression", ["none", "meshopt"])
+@pytest.mark.parametrize("profile", ["nodes", "instanced", "merged"])
+def test_local_run_equals_the_server_in_every_form(server, tmp_path, profile, compression):
+    form = ["--profile", profile, "--compression", compression]
+    local, remote = tmp_path / "local.glb", tmp_path / "remote.glb"
+    succeed("run", "--local", *SMALL, *form, "-o", local)
+    succeed("run", *SMALL, *form, "-o", remote, server=server.url)
+    assert local.read_bytes() == remote.read_bytes()
+    assert (b"EXT_meshopt_compression" in local.read_bytes()) == (compression == "meshopt")
+
+
+def test_the_solver_is_that_of_the_example(server, tmp_path):
+    (tmp_path / "own.json").write_text(json.dumps(HUT))
+    for example in ("domes", tmp_path / "own.json"):
+        for where, place in (("here.glb", {}), ("there.glb", {"server": server.url})):
+            local = [] if place else ["--local"]
+            succeed("run", *local, "--example", example, "--seed", 4, "-o", tmp_path / where,
+                    **place)
+        assert (tmp_path / "here.glb").read_bytes() == (tmp_path / "there.glb").read_bytes()
 
 
 def test_local_run_of_an_example_file_equals_the_server(server, tmp_path):
