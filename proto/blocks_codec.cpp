@@ -2,11 +2,10 @@
 
 namespace modelsynth::proto {
 
-std::optional<Blocks> read_blocks(const Value& value, const RequestLimits& limits) {
+std::optional<Blocks> read_blocks(const Value& value, const RequestLimits& limits, Blocks blocks) {
     if (value.json().is_null()) {
         return std::nullopt;
     }
-    Blocks blocks;
     ObjectReader reader(value);
     if (const auto size = reader.optional("size")) {
         if (const auto cell = size->cell(1, limits.block_extent_max)) {

@@ -10,8 +10,11 @@
 
 namespace modelsynth::proto {
 
-// What stands under `parameters.blocks`: null for none; faults are noted in the value's list.
-[[nodiscard]] std::optional<Blocks> read_blocks(const Value& value, const RequestLimits& limits);
+// What stands under `parameters.blocks`, where a field is absent as in `blocks`: null for none;
+// faults are noted in the value's list.
+[[nodiscard]] std::optional<Blocks> read_blocks(
+    const Value& value, const RequestLimits& limits, Blocks blocks
+);
 
 [[nodiscard]] OrderedJson write_blocks(const std::optional<Blocks>& blocks);
 

@@ -239,7 +239,7 @@ Parameters read_continuous_parameters(
         parameters.offsets = read_offsets(*offsets);
     }
     if (const auto blocks = reader.optional("blocks")) {
-        parameters.blocks.emplace(read_blocks(*blocks, limits));
+        parameters.blocks.emplace(read_blocks(*blocks, limits, continuous::kDefaultBlocks));
     }
     if (const auto boundary = reader.optional("boundary")) {
         parameters.boundary = {};

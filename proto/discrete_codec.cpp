@@ -147,7 +147,7 @@ Parameters read_parameters(const Value& value, const RequestLimits& limits, Para
         read_size(*size, limits, parameters);
     }
     if (const auto blocks = reader.optional("blocks")) {
-        parameters.blocks.emplace(read_blocks(*blocks, limits));
+        parameters.blocks.emplace(read_blocks(*blocks, limits, {}));
     }
     if (const auto boundary = reader.optional("boundary")) {
         ObjectReader sides(*boundary);

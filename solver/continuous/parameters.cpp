@@ -69,7 +69,7 @@ Parameters fill_defaults(Parameters parameters, const Example& example) {
         add_constraints_of(example, parameters);
     }
     if (!parameters.blocks) {
-        Blocks blocks;
+        Blocks blocks = kDefaultBlocks;
         const std::int32_t height = cells_of(parameters).y;
         blocks.layout.size.y = height <= kFullHeightMax ? height : blocks.layout.size.y;
         parameters.blocks = blocks;

@@ -47,6 +47,10 @@ enum class SideKind : std::uint8_t {
     kFree,    // anything: the model goes on beyond, and is cut off there
 };
 
+// Twice the attempts of blocks of cells, which have other means than to try again; the few blocks
+// of what hangs together that need more than eight are rarely more than a second's work.
+inline constexpr Blocks kDefaultBlocks = {{}, 16};
+
 // What a continuous synthesis can be asked for; plain data.
 struct Parameters {
     std::optional<std::array<double, 3>> size;  // metres; none: the example's default
