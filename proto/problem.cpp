@@ -91,6 +91,12 @@ const std::vector<ProblemKind>& problem_kinds() {
          429,
          "As many jobs of the key are unfinished as it may have. Retry-After tells when to come "
          "back."},
+        {"too-many-webhooks",
+         "Too many undelivered webhooks",
+         429,
+         "As many webhooks of the key have not been delivered as may wait: their receivers do not "
+         "answer with 2xx, or not as fast as jobs end. Jobs without webhook are taken, others "
+         "once some have arrived or are given up."},
         {"queue-full",
          "The queue is full",
          503,

@@ -37,6 +37,7 @@ std::string metrics_text(
     return metrics.text(
         {store.queued_count().value_or(0),
          service.running_count(),
+         store.delivery_count().value_or(0),
          space.used_bytes,
          space.free_bytes,
          logging.dropped_count()}
@@ -68,11 +69,14 @@ void tell_reload(
 
 // Null when jobs may have no webhooks.
 std::unique_ptr<WebhookSender> make_sender(
-    const WebhookConfig& config, SqliteStore& store, std::shared_ptr<spdlog::logger> log
+    const WebhookConfig& config,
+    SqliteStore& store,
+    Metrics& metrics,
+    std::shared_ptr<spdlog::logger> log
 ) {
     return config.secret_file.empty()
                ? nullptr
-               : std::make_unique<WebhookSender>(config, store, store, std::move(log));
+               : std::make_unique<WebhookSender>(config, store, store, metrics, std::move(log));
 }
 
 void announce(const Config& config, std::uint16_t port) {
@@ -102,7 +106,7 @@ int serve(const Config& config) {
     if (const auto loaded = admission.load_keys(); !loaded) {
         return refuse_to_start(loaded.error());
     }
-    const auto webhooks = make_sender(config.webhooks, **store, log);
+    const auto webhooks = make_sender(config.webhooks, **store, metrics, log);
     if (webhooks) {
         if (const auto loaded = webhooks->load_secrets(); !loaded) {
             return refuse_to_start(loaded.error());

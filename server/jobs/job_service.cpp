@@ -233,7 +233,9 @@ Parsed<Submitted> JobService::submit(
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
     job.artifacts = inputs.links(job.example_id);
-    auto submitted = parsed(jobs_.submit(job, {config_.queue_max, caller.unfinished_max}));
+    auto submitted = parsed(
+        jobs_.submit(job, {config_.queue_max, caller.unfinished_max, config_.webhooks_waiting_max})
+    );
     if (submitted && !submitted->replayed) {
         const std::lock_guard lock(mutex_);
         ++submissions_;

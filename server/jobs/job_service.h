@@ -39,6 +39,8 @@ struct JobServiceConfig {
     std::size_t workers = 2;
     std::size_t queue_max = 1000;
     std::size_t examples_max = 1000;
+    // Of one owner; with as many that are not delivered its jobs may have none.
+    std::size_t webhooks_waiting_max = 1000;
     // Jobs run as long as what they are thought to need has room in it; 0: three quarters of the
     // machine's memory.
     std::uint64_t memory_bytes_max = 0;

@@ -12,6 +12,8 @@ proto::Problem problem_of(const StoreError& error) {
             return proto::make_problem("queue-full", error.message);
         case StoreErrorCode::kOwnerFull:
             return proto::make_problem("too-many-jobs", error.message);
+        case StoreErrorCode::kWebhooksFull:
+            return proto::make_problem("too-many-webhooks", error.message);
         case StoreErrorCode::kInvalid:
             return proto::make_problem("malformed-request", error.message);
         case StoreErrorCode::kUnavailable:

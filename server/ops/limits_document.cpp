@@ -220,6 +220,13 @@ std::vector<Limit> limits_of_service(const JobServiceConfig& jobs, const Webhook
             "tries",
             "Of a webhook; then its message is dropped."
         ),
+        limit(
+            "webhooks_waiting_max",
+            jobs.webhooks_waiting_max,
+            "webhooks",
+            "Of one key, or of all where there are none, that are not delivered; 429 "
+            "too-many-webhooks beyond."
+        ),
         limit("webhook_seconds", webhooks.try_seconds, "seconds", "For a webhook to be answered."),
         limit("problem_errors_max", proto::kFaultsMax, "errors", "Listed in one problem document."),
     };

@@ -27,6 +27,9 @@ const Histogram::BucketBoundaries kRequestSeconds = {
 // of jobs, up to an hour,
 const Histogram::BucketBoundaries kJobSeconds = {
     0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60, 150, 300, 600, 1800, 3600};
+// of tries of webhooks, up to the most that a receiver may be given to answer,
+const Histogram::BucketBoundaries kTrySeconds = {
+    0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60, 300};
 // and of commits.
 const Histogram::BucketBoundaries kCommitSeconds = {
     0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 5};
@@ -99,6 +102,20 @@ struct Metrics::Families {
             registry, "modelsynth_store_commit_seconds", "How long commits of the store took."
         )
             .Add({}, kCommitSeconds);
+    Family<Counter>& webhook_tries = counters(
+        registry,
+        "modelsynth_webhook_tries_total",
+        "Tries to deliver webhooks that ended, by what became of the webhook."
+    );
+    Histogram& webhook_try_seconds = histograms(
+                                         registry,
+                                         "modelsynth_webhook_try_seconds",
+                                         "How long receivers of webhooks took, or were given."
+    )
+                                         .Add({}, kTrySeconds);
+    Gauge& webhooks_waiting =
+        gauges(registry, "modelsynth_webhooks_waiting", "Webhooks that are not delivered yet.")
+            .Add({});
     Gauge& artifact_bytes =
         gauges(registry, "modelsynth_artifact_bytes", "Bytes of the artifacts that are kept.")
             .Add({});
@@ -116,6 +133,10 @@ struct Metrics::Families {
 
 Metrics::Metrics(const std::string& version) : families_(std::make_unique<Families>()) {
     families_->build_info.Add({{"version", version}}).Set(1);
+    // From nothing, or a rate would miss the first of each.
+    for (const char* outcome : {"delivered", "retried", "given-up"}) {
+        families_->webhook_tries.Add({{"outcome", outcome}});
+    }
 }
 
 Metrics::~Metrics() = default;
@@ -125,6 +146,7 @@ std::string Metrics::text(const Levels& levels) {
     const std::lock_guard lock(families.levels_mutex);
     families.jobs_queued.Set(static_cast<double>(levels.jobs_queued));
     families.jobs_running.Set(static_cast<double>(levels.jobs_running));
+    families.webhooks_waiting.Set(static_cast<double>(levels.webhooks_waiting));
     families.artifact_bytes.Set(static_cast<double>(levels.artifact_bytes));
     families.disk_free_bytes.Set(static_cast<double>(levels.disk_free_bytes));
     families.log_lines_dropped.Increment(
@@ -180,6 +202,11 @@ void Metrics::on_ended(std::string_view solver, std::string_view result, double 
     if (seconds > 0) {
         families_->job_seconds.Add({{"solver", name}}, kJobSeconds).Observe(seconds);
     }
+}
+
+void Metrics::on_try(std::string_view outcome, double seconds) {
+    families_->webhook_tries.Add({{"outcome", std::string(outcome)}}).Increment();
+    families_->webhook_try_seconds.Observe(seconds);
 }
 
 }  // namespace modelsynth::server

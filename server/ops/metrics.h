@@ -2,6 +2,7 @@
 
 #include "server/http/http_observer.h"
 #include "server/jobs/job_observer.h"
+#include "server/webhooks/webhook_observer.h"
 
 #include <cstdint>
 #include <functional>
@@ -12,12 +13,13 @@
 namespace modelsynth::server {
 
 // What is counted, for GET /metrics. Thread-safe; nothing blocks but text().
-class Metrics final : public HttpObserver, public JobObserver {
+class Metrics final : public HttpObserver, public JobObserver, public WebhookObserver {
   public:
     // What is not counted but looked at whenever metrics are asked for.
     struct Levels {
         std::uint64_t jobs_queued = 0;
         std::uint64_t jobs_running = 0;
+        std::uint64_t webhooks_waiting = 0;
         std::uint64_t artifact_bytes = 0;
         std::uint64_t disk_free_bytes = 0;
         std::uint64_t log_lines_dropped = 0;  // ever
@@ -43,6 +45,8 @@ class Metrics final : public HttpObserver, public JobObserver {
     void on_started(double waited_seconds) override;
     void on_block(std::string_view example, bool accepted) override;
     void on_ended(std::string_view solver, std::string_view result, double seconds) override;
+
+    void on_try(std::string_view outcome, double seconds) override;
 
   private:
     struct Families;

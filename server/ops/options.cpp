@@ -139,6 +139,14 @@ void add_work_options(CLI::App& app, Config& config) {
         100'000
     );
     add_number(
+        app,
+        "--webhooks-waiting-max",
+        config.jobs.webhooks_waiting_max,
+        "Webhooks of one key that are not delivered yet; with as many its jobs may have none",
+        1,
+        1'000'000
+    );
+    add_number(
         app, "--model-cells-max", limits.model_cells_max, "Cells of one model", 1, 100'000'000
     );
     add_number(app, "--blocks-max", limits.blocks_max, "Blocks of one model", 1, 10'000'000);

@@ -34,8 +34,8 @@ void add_webhook_options(CLI::App& app, Config& config) {
     app.add_option(
            "--webhook-first-delay",
            webhooks.first_delay_seconds,
-           "Seconds from the first try of a webhook to the second; each further one is six times "
-           "as long"
+           "Seconds from the first try of a webhook to the second; each further pause is six times "
+           "as long, and all are a fifth shorter or longer by chance"
     )
         ->check(CLI::Range(0.001, 3600.0))
         ->capture_default_str();

@@ -35,6 +35,9 @@ class DeliveryStore {
         proto::UnixMillis now, std::size_t per_receiver_max, std::size_t limit
     ) = 0;
 
+    // How many there are, due or not.
+    [[nodiscard]] virtual Stored<std::size_t> delivery_count() = 0;
+
     // It was tried so often and is due again then.
     [[nodiscard]] virtual Stored<void> postpone_delivery(
         const std::string& job_id, std::uint32_t tries, proto::UnixMillis due

@@ -17,7 +17,7 @@ class JobStore {
 
     // Job, key, links to artifacts and event 1 (`queued`) appear in one commit, or none does. A
     // key that its owner used before with the same hash answers with its job. Fails: kConflict (the
-    // key has another hash, or a digest is not stored), kQueueFull, kOwnerFull.
+    // key has another hash, or a digest is not stored), kQueueFull, kOwnerFull, kWebhooksFull.
     [[nodiscard]] virtual Stored<Submitted> submit(
         const NewJob& job, const QueueLimits& limits
     ) = 0;

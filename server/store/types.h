@@ -17,14 +17,15 @@ namespace modelsynth::server {
 // How a call of the store can fail.
 enum class StoreErrorCode : std::uint8_t {
     kNotFound,
-    kConflict,     // same key with another request, an illegal transition, a missing digest
-    kQueueFull,    // as many jobs are queued as the caller allows
-    kOwnerFull,    // as many jobs of one owner are unfinished
-    kLeaseLost,    // another holder now, or the job is gone
-    kInvalid,      // a malformed cursor
-    kCorrupt,      // a file is not what its digest says
-    kUnavailable,  // certainly not applied; the same call may be repeated
-    kClosed,       // the store is shutting down
+    kConflict,      // same key with another request, an illegal transition, a missing digest
+    kQueueFull,     // as many jobs are queued as the caller allows
+    kOwnerFull,     // as many jobs of one owner are unfinished
+    kWebhooksFull,  // as many webhooks of one owner are not delivered
+    kLeaseLost,     // another holder now, or the job is gone
+    kInvalid,       // a malformed cursor
+    kCorrupt,       // a file is not what its digest says
+    kUnavailable,   // certainly not applied; the same call may be repeated
+    kClosed,        // the store is shutting down
 };
 
 struct StoreError {
@@ -68,6 +69,8 @@ struct NewJob {
 struct QueueLimits {
     std::size_t queued_max = 0;                                            // jobs in all
     std::size_t unfinished_max = std::numeric_limits<std::size_t>::max();  // of the job's owner
+    // Deliveries of the job's owner; of jobs that have a webhook alone.
+    std::size_t deliveries_max = std::numeric_limits<std::size_t>::max();
 };
 
 // What a job may be to be handed out.

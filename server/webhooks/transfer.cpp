@@ -105,6 +105,26 @@ long Transfer::status() const {
     return status;
 }
 
+std::optional<std::string> Transfer::retry_after() const {
+    constexpr long kTooManyRequests = 429;
+    constexpr long kUnavailable = 503;
+    const long answered = status();
+    if (answered != kTooManyRequests && answered != kUnavailable) {
+        return std::nullopt;
+    }
+    constexpr int kLastAnswer = -1;
+    curl_header* field = nullptr;
+    const CURLHcode found =
+        curl_easy_header(handle_.get(), "Retry-After", 0, CURLH_HEADER, kLastAnswer, &field);
+    return found == CURLHE_OK ? std::optional<std::string>(field->value) : std::nullopt;
+}
+
+double Transfer::seconds() const {
+    curl_off_t microseconds = 0;
+    curl_easy_getinfo(handle_.get(), CURLINFO_TOTAL_TIME_T, &microseconds);
+    return static_cast<double>(microseconds) / 1e6;
+}
+
 std::string Transfer::failure(CURLcode code) const {
     const long answered = status();
     // An answer that was cut off is one all the same.

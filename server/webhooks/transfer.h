@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,6 +38,12 @@ class Transfer {
 
     // The status of the answer; 0: there was none.
     [[nodiscard]] long status() const;
+
+    // The field Retry-After of an answer of 429 or 503, whose meaning for a retry is what it says.
+    [[nodiscard]] std::optional<std::string> retry_after() const;
+
+    // How long it took so far, from the look-up of the name on.
+    [[nodiscard]] double seconds() const;
 
     // Why it did not arrive, given how the library says that it ended; empty: it did.
     [[nodiscard]] std::string failure(CURLcode code) const;

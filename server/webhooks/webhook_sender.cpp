@@ -2,6 +2,8 @@
 
 #include "proto/job.h"
 #include "server/log/event_line.h"
+#include "server/webhooks/retry_after.h"
+#include "server/webhooks/retry_pauses.h"
 #include "server/webhooks/transfer.h"
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <csignal>
 #include <map>
 #include <new>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -29,14 +32,6 @@ constexpr UnixMillis kPartingMs = 1'000;
 // A receiver's answer ends its tries for good.
 constexpr long kGone = 410;
 
-UnixMillis delay_after(const WebhookConfig& config, std::uint32_t tries) {
-    double seconds = config.first_delay_seconds;
-    for (std::uint32_t i = 1; i < tries; ++i) {
-        seconds *= 6;
-    }
-    return static_cast<UnixMillis>(seconds * 1000);
-}
-
 std::string message_body(const proto::Job& job) {
     return "{\"type\":\"job." + std::string(proto::state_name(job.state)) +
            "\",\"job\":" + proto::to_json(job) + "}";
@@ -50,12 +45,15 @@ class WebhookSender::Loop {
         const WebhookConfig& config,
         JobStore& jobs,
         DeliveryStore& deliveries,
+        WebhookObserver& observer,
         std::shared_ptr<spdlog::logger> log
     )
         : config_(config),
           jobs_(jobs),
           deliveries_(deliveries),
+          observer_(observer),
           log_(std::move(log)),
+          pauses_(config, random_fractions()),
           signer_(config.secret_file) {
         if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !multi_) {
             throw std::bad_alloc();
@@ -197,19 +195,32 @@ class WebhookSender::Loop {
         const std::uint32_t tries = transfer.delivery().tries + 1;
         const std::string failure = transfer.failure(code);
         const bool is_last = tries >= config_.tries_max || transfer.status() == kGone;
+        const char* outcome = "delivered";
         Stored<void> kept;
-        if (failure.empty() || is_last) {
+        if (failure.empty()) {
             kept = deliveries_.drop_delivery(id);
+            log_event(*log_, level::info, "webhook delivered", {{"job", id}, {"try", tries}});
+        } else if (is_last) {
+            outcome = "given-up";
+            kept = deliveries_.drop_delivery(id);
+            log_event(
+                *log_,
+                level::warn,
+                "webhook given up",
+                {{"job", id}, {"try", tries}, {"why", failure}}
+            );
         } else {
-            kept = deliveries_.postpone_delivery(
-                id, tries, proto::now_millis() + delay_after(config_, tries)
+            outcome = "retried";
+            const UnixMillis pause = pause_after(transfer, tries);
+            kept = deliveries_.postpone_delivery(id, tries, proto::now_millis() + pause);
+            log_event(
+                *log_,
+                level::info,
+                "webhook failed",
+                {{"job", id}, {"try", tries}, {"why", failure}, {"pause_ms", pause}}
             );
         }
-        const char* event = failure.empty() ? "webhook delivered"
-                            : is_last       ? "webhook given up"
-                                            : "webhook failed";
-        const auto weight = is_last && !failure.empty() ? level::warn : level::info;
-        log_event(*log_, weight, event, {{"job", id}, {"try", tries}, {"why", failure}});
+        observer_.on_try(kept ? outcome : "retried", transfer.seconds());
         if (!kept) {
             trouble_until_ = proto::now_millis() + kStoreTroubleMs;
             const std::string& why = kept.error().message;
@@ -217,10 +228,19 @@ class WebhookSender::Loop {
         }
     }
 
+    UnixMillis pause_after(const Transfer& transfer, std::uint32_t tries) {
+        const auto field = transfer.retry_after();
+        return pauses_.after(
+            tries, field ? parse_retry_after(*field, proto::now_millis()) : std::nullopt
+        );
+    }
+
     WebhookConfig config_;
     JobStore& jobs_;
     DeliveryStore& deliveries_;
+    WebhookObserver& observer_;
     std::shared_ptr<spdlog::logger> log_;
+    RetryPauses pauses_;  // the loop's thread alone uses it
     Signer signer_;
     std::unique_ptr<CURLM, decltype(&curl_multi_cleanup)> multi_{
         curl_multi_init(), &curl_multi_cleanup};
@@ -237,9 +257,10 @@ WebhookSender::WebhookSender(
     const WebhookConfig& config,
     JobStore& jobs,
     DeliveryStore& deliveries,
+    WebhookObserver& observer,
     std::shared_ptr<spdlog::logger> log
 )
-    : loop_(std::make_unique<Loop>(config, jobs, deliveries, std::move(log))) {}
+    : loop_(std::make_unique<Loop>(config, jobs, deliveries, observer, std::move(log))) {}
 
 WebhookSender::~WebhookSender() = default;
 

@@ -15,6 +15,8 @@ import time
 
 import pytest
 
+from webhook_receiver import SECRET
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN_DIR = pathlib.Path(os.environ.get("MODELSYNTH_BIN_DIR", ROOT / "build/release/bin"))
 
@@ -173,6 +175,26 @@ def make_server():
     for server in servers:
         server.kill()
     shutil.rmtree(directory, ignore_errors=True)
+
+
+@pytest.fixture
+def hook_server(make_server, tmp_path):
+    """Makes servers that may send to this machine; further options after these."""
+    secret = tmp_path / "secret"
+    secret.write_text(SECRET + "\n")
+
+    def make(*options, private=True, http=True, **more):
+        usual = {"--webhook-secret-file": secret, "--webhook-first-delay": "0.001",
+                 "--webhook-seconds": "2"}
+        server = make_server(
+            *(word for name, value in usual.items() if name not in options
+              for word in (name, value)),
+            *(["--webhook-allow-http"] if http else []),
+            *(["--webhook-allow-private"] if private else []), *options, **more)
+        server.secret = secret
+        return server
+
+    return make
 
 
 @pytest.fixture(scope="session")

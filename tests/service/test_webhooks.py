@@ -15,26 +15,6 @@ from conftest import BIN_DIR, Server
 from webhook_receiver import OTHER_SECRET, SECRET, Receiver, reply
 
 
-@pytest.fixture
-def hook_server(make_server, tmp_path):
-    """Makes servers that may send to this machine; further options after these."""
-    secret = tmp_path / "secret"
-    secret.write_text(SECRET + "\n")
-
-    def make(*options, private=True, http=True, **more):
-        usual = {"--webhook-secret-file": secret, "--webhook-first-delay": "0.001",
-                 "--webhook-seconds": "2"}
-        server = make_server(
-            *(word for name, value in usual.items() if name not in options
-              for word in (name, value)),
-            *(["--webhook-allow-http"] if http else []),
-            *(["--webhook-allow-private"] if private else []), *options, **more)
-        server.secret = secret
-        return server
-
-    return make
-
-
 @pytest.fixture(scope="module")
 def strict(tmp_path_factory):
     folder = tmp_path_factory.mktemp("strict")

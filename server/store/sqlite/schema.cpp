@@ -11,7 +11,7 @@ namespace {
 
 // The form of the tables is numbered; step i makes form i + 1 of form i, step 0 out of nothing. A
 // step that was released is not changed any more.
-constexpr std::array<const char*, 5> kSteps = {
+constexpr std::array<const char*, 6> kSteps = {
     R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value INTEGER NOT NULL) STRICT, WITHOUT ROWID;
 CREATE TABLE job (
@@ -118,6 +118,11 @@ CREATE TABLE delivery (
     due INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;
 CREATE INDEX delivery_due ON delivery (due);
+)sql",
+    R"sql(
+ALTER TABLE delivery ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+UPDATE delivery SET owner = (SELECT owner FROM job WHERE id = job_id);
+CREATE INDEX delivery_owner ON delivery (owner);
 )sql"};
 
 // 0: the file is new.

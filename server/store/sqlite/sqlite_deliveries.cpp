@@ -26,20 +26,28 @@ std::string receiver_of(const std::string& url) {
 
 void SqliteStore::add_delivery(Database& database, const std::string& id, UnixMillis now) {
     std::string url;
+    std::string owner;
     {
-        Statement row = database.prepare("SELECT webhook FROM job WHERE id = ?");
+        Statement row = database.prepare("SELECT webhook, owner FROM job WHERE id = ?");
         row.bind(std::string_view(id));
-        url = row.step() ? row.text(0) : "";
+        if (row.step()) {
+            url = row.text(0);
+            owner = row.text(1);
+        }
     }
     if (url.empty()) {
         return;
     }
     database
-        .prepare("INSERT OR IGNORE INTO delivery (job_id, url, receiver, due) VALUES (?, ?, ?, ?)")
+        .prepare(
+            "INSERT OR IGNORE INTO delivery (job_id, url, receiver, due, owner) "
+            "VALUES (?, ?, ?, ?, ?)"
+        )
         .bind(std::string_view(id))
         .bind(std::string_view(url))
         .bind(std::string_view(receiver_of(url)))
         .bind(now)
+        .bind(std::string_view(owner))
         .run();
     has_new_deliveries_ = true;
 }
@@ -69,6 +77,14 @@ Stored<DueDeliveries> SqliteStore::due_deliveries(
             due.next = next.integer(0);
         }
         return due;
+    });
+}
+
+Stored<std::size_t> SqliteStore::delivery_count() {
+    return with_reader<std::size_t>([](Database& database) -> Stored<std::size_t> {
+        Statement row = database.prepare("SELECT COUNT(*) FROM delivery");
+        row.step();
+        return static_cast<std::size_t>(row.natural(0));
     });
 }
 

@@ -45,6 +45,45 @@ Stored<std::optional<Job>> job_of_key(
     return std::optional<Job>(std::move(*job));
 }
 
+// Fails with the limit that the job would pass.
+Stored<void> find_room(Database& database, const NewJob& job, const QueueLimits& limits) {
+    Statement queued = database.prepare("SELECT COUNT(*) FROM job WHERE state = 0");
+    queued.step();
+    if (queued.natural(0) >= limits.queued_max) {
+        return failure(
+            StoreErrorCode::kQueueFull,
+            std::to_string(limits.queued_max) + " jobs are waiting, as many as are taken"
+        );
+    }
+    // By these indexes, or it looks at all jobs that the owner ever had.
+    Statement unfinished = database.prepare(
+        "SELECT (SELECT COUNT(*) FROM job INDEXED BY job_queue WHERE state = 0 AND "
+        "owner = ?1) + (SELECT COUNT(*) FROM job INDEXED BY job_running WHERE state = 1 "
+        "AND owner = ?1)"
+    );
+    unfinished.bind(std::string_view(job.owner)).step();
+    if (unfinished.natural(0) >= limits.unfinished_max) {
+        return failure(
+            StoreErrorCode::kOwnerFull,
+            std::to_string(limits.unfinished_max) +
+                " jobs of the key are unfinished, as many as it may have"
+        );
+    }
+    if (job.webhook.empty()) {
+        return {};
+    }
+    Statement deliveries = database.prepare("SELECT COUNT(*) FROM delivery WHERE owner = ?");
+    deliveries.bind(std::string_view(job.owner)).step();
+    if (deliveries.natural(0) >= limits.deliveries_max) {
+        return failure(
+            StoreErrorCode::kWebhooksFull,
+            std::to_string(limits.deliveries_max) +
+                " webhooks of the key are not delivered, as many as may wait"
+        );
+    }
+    return {};
+}
+
 }  // namespace
 
 Stored<std::optional<Job>> SqliteStore::find_key(
@@ -67,31 +106,8 @@ Stored<Submitted> SqliteStore::submit(const NewJob& job, const QueueLimits& limi
                 return Submitted{std::move(**known), true};
             }
         }
-        {
-            Statement queued = database.prepare("SELECT COUNT(*) FROM job WHERE state = 0");
-            queued.step();
-            if (queued.natural(0) >= limits.queued_max) {
-                return failure(
-                    StoreErrorCode::kQueueFull,
-                    std::to_string(limits.queued_max) + " jobs are waiting, as many as are taken"
-                );
-            }
-        }
-        {
-            // By these indexes, or it looks at all jobs that the owner ever had.
-            Statement unfinished = database.prepare(
-                "SELECT (SELECT COUNT(*) FROM job INDEXED BY job_queue WHERE state = 0 AND "
-                "owner = ?1) + (SELECT COUNT(*) FROM job INDEXED BY job_running WHERE state = 1 "
-                "AND owner = ?1)"
-            );
-            unfinished.bind(std::string_view(job.owner)).step();
-            if (unfinished.natural(0) >= limits.unfinished_max) {
-                return failure(
-                    StoreErrorCode::kOwnerFull,
-                    std::to_string(limits.unfinished_max) +
-                        " jobs of the key are unfinished, as many as it may have"
-                );
-            }
+        if (auto room = find_room(database, job, limits); !room) {
+            return tl::unexpected(std::move(room.error()));
         }
         const std::uint64_t turn = turn_of_next(database, job.owner, job.priority);
         database

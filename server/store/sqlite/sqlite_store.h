@@ -100,6 +100,7 @@ class SqliteStore final : public JobStore,
     [[nodiscard]] Stored<DueDeliveries> due_deliveries(
         proto::UnixMillis now, std::size_t per_receiver_max, std::size_t limit
     ) override;
+    [[nodiscard]] Stored<std::size_t> delivery_count() override;
     [[nodiscard]] Stored<void> postpone_delivery(
         const std::string& job_id, std::uint32_t tries, proto::UnixMillis due
     ) override;

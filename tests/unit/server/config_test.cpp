@@ -72,6 +72,19 @@ TEST_F(Configuration, TheCommandLineGoesBeforeTheEnvironmentAndThatBeforeTheFile
     EXPECT_EQ(parsed.config->http.limits.head_seconds, HttpLimits{}.head_seconds);
 }
 
+TEST_F(Configuration, AsManyWebhooksWaitAsAnyOfTheThreeSays) {
+    EXPECT_EQ(parse({}).config->jobs.webhooks_waiting_max, 1000U);
+    const std::string file = write("webhooks-waiting-max = 3\n");
+    EXPECT_EQ(parse({"--config", file}).config->jobs.webhooks_waiting_max, 3U);
+    const Variable waiting("MODELSYNTH_WEBHOOKS_WAITING_MAX", "2");
+    EXPECT_EQ(parse({"--config", file}).config->jobs.webhooks_waiting_max, 2U);
+    const auto parsed = parse({"--config", file, "--webhooks-waiting-max", "1"});
+    EXPECT_EQ(parsed.config->jobs.webhooks_waiting_max, 1U);
+    for (const char* wrong : {"0", "-1", "1000001", "x", ""}) {
+        EXPECT_FALSE(parse({"--webhooks-waiting-max", wrong}).config) << wrong;
+    }
+}
+
 TEST_F(Configuration, ListsComeFromAllThree) {
     const auto origins = [](const Parsed& parsed) {
         return parsed.config.value().access.browsers.origins;

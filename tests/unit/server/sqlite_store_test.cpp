@@ -86,16 +86,16 @@ TEST_F(SqliteStoreFiles, ADirectoryThatCannotBeMadeIsAnError) {
 
 TEST_F(SqliteStoreFiles, TablesOfANewerFormAreRefused) {
     value(value(open())->submit(new_job("a"), kNoLimit));
-    execute("UPDATE meta SET value = 6 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 7 WHERE key = 'schema'");
     for (int i = 0; i < 2; ++i) {
         const auto opened = open();
         ASSERT_FALSE(opened);
         EXPECT_EQ(opened.error().code, StoreErrorCode::kConflict);
         EXPECT_NE(opened.error().message.find("newer version"), std::string::npos);
-        EXPECT_NE(opened.error().message.find("form 6"), std::string::npos);
+        EXPECT_NE(opened.error().message.find("form 7"), std::string::npos);
     }
     // Nothing was changed in it.
-    execute("UPDATE meta SET value = 5 WHERE key = 'schema'");
+    execute("UPDATE meta SET value = 6 WHERE key = 'schema'");
     EXPECT_TRUE(value(open())->find("a"));
 }
 
@@ -115,6 +115,29 @@ constexpr const char* kUndoFourthForm =
     "CREATE INDEX job_queue ON job (ordinal) WHERE state = 0;"
     "CREATE INDEX job_running ON job (ordinal) WHERE state = 1;"
     "UPDATE meta SET value = 3 WHERE key = 'schema';";
+
+TEST_F(SqliteStoreFiles, DeliveriesOfTheFifthFormAreTheirJobsOwners) {
+    NewJob job = new_job("a");
+    job.webhook = "https://example.com/hook";
+    job.owner = "ann";
+    {
+        const auto store = value(open());
+        value(store->submit(job, kNoLimit));
+        value(store->cancel("a", kNow));
+    }
+    execute(
+        "DROP INDEX delivery_owner; ALTER TABLE delivery DROP COLUMN owner;"
+        "UPDATE meta SET value = 5 WHERE key = 'schema'"
+    );
+    const auto store = value(open());
+    EXPECT_EQ(value(store->due_deliveries(kNow, 1, 10)).items.size(), 1U);
+    QueueLimits limits = kNoLimit;
+    limits.deliveries_max = 1;
+    job.id = "b";
+    EXPECT_EQ(error_of(store->submit(job, limits)), StoreErrorCode::kWebhooksFull);
+    job.owner = "bob";
+    EXPECT_FALSE(error_of(store->submit(job, limits)));
+}
 
 TEST_F(SqliteStoreFiles, JobsOfTheFourthFormHaveNoWebhooks) {
     value(value(open())->submit(new_job("a"), kNoLimit));

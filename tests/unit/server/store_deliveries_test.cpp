@@ -103,6 +103,58 @@ TEST_P(DeliveryContract, AnErasedJobTellsNobody) {
     EXPECT_TRUE(value(deliveries().due_deliveries(kNow, 10, 10)).items.empty());
 }
 
+TEST_P(DeliveryContract, AllThatAreNotDroppedCount) {
+    const std::size_t others = value(deliveries().delivery_count());
+    for (const char* id : {"a", "b", "c"}) {
+        submit(hooked_job(id));
+        EXPECT_EQ(value(deliveries().delivery_count()), others);
+    }
+    for (const char* id : {"a", "b", "c"}) {
+        value(jobs().cancel(id, kNow));
+    }
+    value(deliveries().postpone_delivery("a", 1, kNow + 1'000'000));
+    between_steps();
+    EXPECT_EQ(value(deliveries().delivery_count()), others + 3);
+    value(deliveries().drop_delivery("a"));
+    value(jobs().erase("b"));
+    between_steps();
+    EXPECT_EQ(value(deliveries().delivery_count()), others + 1);
+}
+
+TEST_P(DeliveryContract, AnOwnerHasSoManyAndNoMore) {
+    QueueLimits limits = kNoLimit;
+    limits.deliveries_max = 2;
+    const auto give = [&](const std::string& id, const std::string& owner, bool is_hooked = true) {
+        NewJob job = is_hooked ? hooked_job(id) : new_job(id);
+        job.owner = owner;
+        job.idempotency_key = id;
+        return error_of(jobs().submit(job, limits));
+    };
+    // What has not ended has nothing to deliver.
+    for (const char* id : {"a1", "a2", "a3"}) {
+        EXPECT_FALSE(give(id, "a"));
+    }
+    value(jobs().cancel("a1", kNow));
+    EXPECT_FALSE(give("a4", "a"));
+    value(jobs().cancel("a2", kNow));
+    between_steps();
+    EXPECT_EQ(give("a5", "a"), StoreErrorCode::kWebhooksFull);
+    EXPECT_EQ(error_of(jobs().find("a5")), StoreErrorCode::kNotFound);
+    // It counts for no one else, for no job without a webhook, and not for a repetition.
+    EXPECT_FALSE(give("b1", "b"));
+    EXPECT_FALSE(give("a6", "a", false));
+    EXPECT_FALSE(give("a1", "a"));
+    // Jobs that were taken end as before.
+    value(jobs().cancel("a3", kNow));
+    EXPECT_EQ(value(deliveries().due_deliveries(kNow, 10, 10)).items.size(), 3U);
+    value(deliveries().postpone_delivery("a1", 1, kNow + 1'000'000));
+    value(deliveries().drop_delivery("a2"));
+    EXPECT_EQ(give("a5", "a"), StoreErrorCode::kWebhooksFull);
+    value(jobs().erase("a3"));
+    between_steps();
+    EXPECT_FALSE(give("a5", "a"));
+}
+
 TEST_P(DeliveryContract, NewsAreToldOf) {
     std::atomic<int> told = 0;
     deliveries().on_delivery([&told] { ++told; });

@@ -31,6 +31,8 @@ std::ostream& operator<<(std::ostream& out, StoreErrorCode code) {
             return out << "kQueueFull";
         case StoreErrorCode::kOwnerFull:
             return out << "kOwnerFull";
+        case StoreErrorCode::kWebhooksFull:
+            return out << "kWebhooksFull";
         case StoreErrorCode::kLeaseLost:
             return out << "kLeaseLost";
         case StoreErrorCode::kInvalid:
