@@ -141,8 +141,6 @@ std::string file_stem(const Call& call, const std::optional<std::uint32_t>& alte
     return alternative ? call.id + "-" + std::to_string(*alternative) : call.id;
 }
 
-using ModelFile = JobService::ModelFile;
-
 template <class Value, std::size_t kCount>
 const Value* find_named(
     const std::array<std::pair<std::string_view, Value>, kCount>& known, const std::string& name
@@ -199,7 +197,7 @@ Response get_model(const Call& call) {
     if (!file) {
         return refuse(call, file.error());
     }
-    const auto digest = call.service.model_digest(call.id, *file);
+    const auto digest = call.service.models().digest(call.id, *file);
     if (!digest) {
         return refuse(call, digest.error());
     }
@@ -213,9 +211,10 @@ Response get_model(const Call& call) {
     representation.etag = "\"" + *digest + "\"";
     representation.file_name = file_stem(call, file->alternative) + ".glb";
     representation.content = std::move(*reader);
-    if (size <= JobService::kGzippedBytesMax) {
+    if (size <= JobModels::kGzippedBytesMax) {
         representation.gzipped = [&call, &file] {
-            return call.service.gzipped_model_digest(call.id, *file)
+            return call.service.models()
+                .gzipped_digest(call.id, *file)
                 .and_then([&call](const std::string& gzip) { return open_file(call, gzip); })
                 .map([](Reader gzip) { return Content(std::move(gzip)); });
         };
@@ -224,7 +223,7 @@ Response get_model(const Call& call) {
 }
 
 Response get_preview(const Call& call) {
-    auto glb = call.service.preview(call.id);
+    auto glb = call.service.models().preview(call.id);
     if (!glb) {
         return refuse(call, glb.error());
     }
@@ -239,7 +238,7 @@ Response get_labels(const Call& call) {
     if (!alternative) {
         return refuse(call, alternative.error());
     }
-    auto labels = call.service.labels_json(call.id, *alternative);
+    auto labels = call.service.models().labels_json(call.id, *alternative);
     if (!labels) {
         return refuse(call, labels.error());
     }

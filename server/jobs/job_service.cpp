@@ -1,10 +1,7 @@
 #include "server/jobs/job_service.h"
 
-#include "proto/frame.h"
-#include "server/jobs/gzip.h"
 #include "server/jobs/ids.h"
 #include "server/jobs/store_problem.h"
-#include "server/store/artifact_names.h"
 #include "solver/registry/estimate.h"
 
 #include <pthread.h>
@@ -23,42 +20,9 @@ using proto::JobState;
 using proto::make_problem;
 using proto::Parsed;
 
-template <class T>
-Parsed<T> parsed(Stored<T> stored) {
-    if (!stored) {
-        return tl::unexpected(problem_of(stored.error()));
-    }
-    if constexpr (std::is_void_v<T>) {
-        return {};
-    } else {
-        return std::move(*stored);
-    }
-}
-
 // What a job of no labels costs, in choices of labels: it is read, logged, kept and sent all the
 // same.
 constexpr std::uint64_t kJobCost = 1000;
-
-const char* profile_name(GlbProfile profile) {
-    switch (profile) {
-        case GlbProfile::kNodes:
-            return "nodes";
-        case GlbProfile::kInstanced:
-            return "instanced";
-        case GlbProfile::kMerged:
-            return "merged";
-    }
-    return "nodes";
-}
-
-std::string artifact_name(const JobService::ModelFile& file) {
-    const char* suffix = file.compression == GlbCompression::kMeshopt ? ".meshopt" : "";
-    return model_artifact(
-        std::string(profile_name(file.profile)) + suffix, file.alternative.value_or(0)
-    );
-}
-
-bool has_expired(const Job& job) { return job.expires && *job.expires < proto::now_millis(); }
 
 }  // namespace
 
@@ -91,6 +55,7 @@ JobService::JobService(
       log_(std::move(log)),
       examples_(examples, artifacts, config_.limits, config.examples_max),
       capacity_(capacity_of(config)),
+      models_(jobs_, artifacts_, examples_, live_, preparations_, config_.limits),
       observer_(observer) {
     for (std::size_t i = 0; i < config_.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) {
@@ -282,264 +247,18 @@ Parsed<void> JobService::erase(const std::string& id) {
     return parsed(std::move(erased));
 }
 
-Parsed<Job> JobService::find_finished(const std::string& id) {
-    auto job = find(id);
-    if (!job) {
-        return job;
-    }
-    if (!proto::is_ended(job->state)) {
-        return tl::unexpected(
-            make_problem("not-finished", "the job is " + std::string(proto::state_name(job->state)))
-        );
-    }
-    if (has_expired(*job)) {
-        return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
-    }
-    if (job->state != JobState::kSucceeded) {
-        return tl::unexpected(make_problem(
-            "no-model",
-            "the job " + std::string(job->state == JobState::kFailed ? "failed" : "was cancelled") +
-                "; its preview may be there"
-        ));
-    }
-    return job;
-}
-
-Parsed<Job> JobService::find_with_model(
-    const std::string& id, const std::optional<std::uint32_t>& alternative
-) {
-    if (!alternative) {
-        return find_finished(id);
-    }
-    auto job = find(id);
-    if (!job) {
-        return job;
-    }
-    const bool is_never_made = job->state == JobState::kSucceeded ||
-                               *alternative >= proto::alternatives_of_request(job->request);
-    if (!has_expired(*job) && jobs_.artifact(id, labels_artifact(*alternative))) {
-        return job;
-    }
-    if (has_expired(*job) || !is_never_made) {
-        return find_finished(id);  // tells why it is not there
-    }
-    return tl::unexpected(
-        make_problem("not-found", "the job has no alternative " + std::to_string(*alternative))
-    );
-}
-
 Parsed<proto::JobRequest> JobService::find_origin(
     const std::string& id, std::uint32_t alternative, const Caller& caller, InheritedInputs& inputs
 ) {
     if (auto visible = find(id, caller); !visible) {
         return tl::unexpected(std::move(visible.error()));
     }
-    const auto job = find_finished(id);
+    const auto job = models_.find_finished(id);
     if (!job) {
         return tl::unexpected(job.error());
     }
     const auto taken = inputs.take(jobs_, artifacts_, id, alternative);
-    return taken ? read_request(*job) : tl::unexpected(problem_of(taken.error()));
-}
-
-Stored<std::string> JobService::load_artifact(const std::string& id, const std::string& name) {
-    return jobs_.artifact(id, name).and_then([this](const std::string& digest) {
-        return artifacts_.load(digest);
-    });
-}
-
-Stored<std::string> JobService::load_newest_labels(const Job& job) {
-    if (job.state != JobState::kSucceeded) {
-        auto preview = load_artifact(job.id, kPreviewArtifact);
-        if (preview || preview.error().code != StoreErrorCode::kNotFound) {
-            return preview;
-        }
-        auto checkpoint = jobs_.checkpoint(job.id);
-        if (!checkpoint) {
-            return tl::unexpected(std::move(checkpoint.error()));
-        }
-        if (*checkpoint) {
-            return std::move((*checkpoint)->labels);
-        }
-    }
-    const std::uint32_t made = proto::alternatives_of_result(job.result);
-    return load_artifact(job.id, labels_artifact(made - 1));
-}
-
-Parsed<proto::JobRequest> JobService::read_request(const Job& job) {
-    return proto::parse_job_request(
-        job.request,
-        config_.limits,
-        [this, &job](const std::string& id) -> std::optional<Example> {
-            auto entry = find_example(jobs_, examples_, job.id, id);
-            return entry ? std::optional(std::move(entry->example)) : std::nullopt;
-        },
-        nullptr,
-        job.seed
-    );
-}
-
-Parsed<JobService::LoadedModel> JobService::load_model(
-    const Job& job, const Stored<std::string>& encoded_labels
-) {
-    if (!encoded_labels) {
-        return tl::unexpected(problem_of(encoded_labels.error()));
-    }
-    auto request = read_request(job);
-    if (!request) {
-        return tl::unexpected(std::move(request.error()));
-    }
-    auto labels = proto::decode_labels(*encoded_labels);
-    auto space = space_of(request->task.example, request->task.parameters, preparations_);
-    if (!space) {
-        return tl::unexpected(proto::problem_of(space.error()));
-    }
-    if (!labels || labels->size() != (*space)->site_count()) {
-        return tl::unexpected(make_problem("internal", "the job's labels are damaged"));
-    }
-    return LoadedModel{request->task.example, {std::move(*space), std::move(*labels)}};
-}
-
-Parsed<std::string> JobService::keep(
-    const std::string& id, const std::string& name, std::string_view bytes
-) {
-    const auto pin = artifacts_.put(bytes);
-    if (!pin) {
-        return tl::unexpected(problem_of(pin.error()));
-    }
-    const auto linked = jobs_.link(id, {name, (*pin)->digest()});
-    if (!linked) {
-        return tl::unexpected(problem_of(linked.error()));
-    }
-    return (*pin)->digest();
-}
-
-Parsed<std::string> JobService::model_digest(const std::string& id, const ModelFile& file) {
-    const auto job = find_with_model(id, file.alternative);
-    if (!job) {
-        return tl::unexpected(job.error());
-    }
-    const std::string name = artifact_name(file);
-    const auto known = jobs_.artifact(id, name);
-    if (known) {
-        return *known;
-    }
-    const auto loaded =
-        load_model(*job, load_artifact(id, labels_artifact(file.alternative.value_or(0))));
-    if (!loaded) {
-        return tl::unexpected(loaded.error());
-    }
-    GlbOptions options;
-    options.profile = file.profile;
-    options.compression = file.compression;
-    const auto glb = write_glb(whole_scene(loaded->model), options);
-    return glb ? keep(id, name, *glb) : tl::unexpected(proto::problem_of(glb.error()));
-}
-
-Parsed<std::string> JobService::gzipped_model_digest(const std::string& id, const ModelFile& file) {
-    const auto digest = model_digest(id, file);
-    if (!digest) {
-        return digest;
-    }
-    const std::string name = gzipped_artifact(artifact_name(file));
-    const auto known = jobs_.artifact(id, name);
-    if (known) {
-        return *known;
-    }
-    return gzip_artifact(*digest).and_then([&](const std::string& bytes) {
-        return keep(id, name, bytes);
-    });
-}
-
-Parsed<std::string> JobService::gzip_artifact(const std::string& digest) {
-    constexpr std::uint64_t kPiece = 256 * 1024;
-    const auto reader = artifacts_.open(digest);
-    if (!reader) {
-        return tl::unexpected(problem_of(reader.error()));
-    }
-    const std::uint64_t size = (*reader)->size();
-    if (size > kGzippedBytesMax) {
-        return tl::unexpected(make_problem("too-large", "the file is too large to be coded"));
-    }
-    GzipWriter writer;
-    std::string piece;
-    for (std::uint64_t at = 0; at < size; at += piece.size()) {
-        piece.resize(std::min(kPiece, size - at));
-        if (const auto read = (*reader)->read(at, piece); !read) {
-            return tl::unexpected(problem_of(read.error()));
-        }
-        writer.append(piece);
-    }
-    return writer.finish();
-}
-
-std::optional<LiveJob::State> JobService::whole_state(const std::string& id, std::uint64_t seq) {
-    if (const auto live = live_.find(id)) {
-        return live->state_at(seq);
-    }
-    const auto job = jobs_.find(id);
-    if (!job || !proto::is_ended(job->state)) {
-        return std::nullopt;
-    }
-    auto loaded = load_model(*job, load_newest_labels(*job));
-    // Of the steps in between nothing is kept, so there is one state, and it stands at the end.
-    if (!loaded || job->head - 1 != seq) {
-        return std::nullopt;
-    }
-    return LiveJob::State{job->head - 1, std::move(loaded->model), true};
-}
-
-Parsed<Model> JobService::newest_model(const Job& job) {
-    if (const auto live = live_.find(job.id)) {
-        auto state = live->state();
-        if (state.any_block) {
-            return std::move(state.model);
-        }
-    }
-    const auto labels = load_newest_labels(job);
-    if (!labels && labels.error().code == StoreErrorCode::kNotFound) {
-        return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
-    }
-    return load_model(job, labels).map([](LoadedModel loaded) { return std::move(loaded.model); });
-}
-
-Parsed<std::string> JobService::preview(const std::string& id) {
-    const auto job = find(id);
-    if (!job) {
-        return tl::unexpected(job.error());
-    }
-    if (has_expired(*job)) {
-        return tl::unexpected(make_problem("expired", "the job's model is no longer kept"));
-    }
-    const auto model = newest_model(*job);
-    if (!model) {
-        return tl::unexpected(model.error());
-    }
-    auto glb = write_glb(whole_scene(*model));
-    if (!glb) {
-        return tl::unexpected(proto::problem_of(glb.error()));
-    }
-    return std::move(*glb);
-}
-
-Parsed<std::string> JobService::labels_json(
-    const std::string& id, const std::optional<std::uint32_t>& alternative
-) {
-    const auto job = find_with_model(id, alternative);
-    if (!job) {
-        return tl::unexpected(job.error());
-    }
-    const auto loaded =
-        load_model(*job, load_artifact(id, labels_artifact(alternative.value_or(0))));
-    if (!loaded) {
-        return tl::unexpected(loaded.error());
-    }
-    if (!loaded->model.space->is_grid()) {
-        return tl::unexpected(
-            make_problem("not-found", "the job's model has no cells that labels could stand in")
-        );
-    }
-    return proto::labels_json(loaded->example, loaded->model);
+    return taken ? models_.read_request(*job) : tl::unexpected(problem_of(taken.error()));
 }
 
 Parsed<void> JobService::check_room() const {

@@ -9,6 +9,7 @@
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_inputs.h"
+#include "server/jobs/job_models.h"
 #include "server/jobs/job_observer.h"
 #include "server/jobs/live_job.h"
 #include "server/jobs/running_jobs.h"
@@ -16,7 +17,6 @@
 #include "server/store/artifact_store.h"
 #include "server/store/event_log.h"
 #include "server/store/job_store.h"
-#include "solver/mesh/glb_writer.h"
 
 #include <spdlog/logger.h>
 
@@ -94,39 +94,7 @@ class JobService {
     [[nodiscard]] proto::Parsed<proto::Job> cancel(const std::string& id);
     [[nodiscard]] proto::Parsed<void> erase(const std::string& id);
 
-    // Coding this much takes some ten seconds, while the client waits for its first byte.
-    static constexpr std::uint64_t kGzippedBytesMax = std::uint64_t{256} << 20;
-
-    // Which file of a finished model. Of several models the first; an alternative that is named is
-    // there as soon as it is made, whatever becomes of the job.
-    struct ModelFile {
-        GlbProfile profile = GlbProfile::kNodes;
-        GlbCompression compression = GlbCompression::kNone;
-        std::optional<std::uint32_t> alternative;
-    };
-
-    // The file's digest. It is made on first use and kept with the job.
-    // Fails: not-found, not-finished, no-model, expired, too-large.
-    [[nodiscard]] proto::Parsed<std::string> model_digest(
-        const std::string& id, const ModelFile& file
-    );
-    // That of the file coded with gzip, kept as it is.
-    // Fails: as above; too-large for files of more than kGzippedBytesMax.
-    [[nodiscard]] proto::Parsed<std::string> gzipped_model_digest(
-        const std::string& id, const ModelFile& file
-    );
-    // The model as far as it is. Fails: not-found, not-finished before the first accepted block.
-    [[nodiscard]] proto::Parsed<std::string> preview(const std::string& id);
-    // Which: as for a ModelFile. Fails: as model_digest(); not-found where the model has no cells.
-    [[nodiscard]] proto::Parsed<std::string> labels_json(
-        const std::string& id, const std::optional<std::uint32_t>& alternative
-    );
-
-    // The state of a job at an event or later, for whoever missed frames: labels and the seq up
-    // to which they include everything. Nothing when there is no such state (yet).
-    [[nodiscard]] std::optional<LiveJob::State> whole_state(
-        const std::string& id, std::uint64_t seq
-    );
+    [[nodiscard]] JobModels& models() { return models_; }
 
     [[nodiscard]] ExampleLibrary& examples() { return examples_; }
 
@@ -155,35 +123,9 @@ class JobService {
     void drain(std::chrono::seconds most);
 
   private:
-    struct LoadedModel {
-        Example example;
-        Model model;
-    };
-
     void work(const std::stop_token& stop);
     // Removes what is no longer kept.
     void keep_house(const std::stop_token& stop);
-    [[nodiscard]] proto::Parsed<LoadedModel> load_model(
-        const proto::Job& job, const Stored<std::string>& encoded_labels
-    );
-    // The request as it was accepted; its example is found even when it was deleted since.
-    [[nodiscard]] proto::Parsed<proto::JobRequest> read_request(const proto::Job& job);
-    [[nodiscard]] Stored<std::string> load_artifact(const std::string& id, const std::string& name);
-    // Keeps the bytes as an artifact of the job and returns their digest.
-    [[nodiscard]] proto::Parsed<std::string> keep(
-        const std::string& id, const std::string& name, std::string_view bytes
-    );
-    // A stored artifact coded with gzip.
-    [[nodiscard]] proto::Parsed<std::string> gzip_artifact(const std::string& digest);
-    // The newest labels, as far as the store tells them; see newest_model() for jobs that run.
-    [[nodiscard]] Stored<std::string> load_newest_labels(const proto::Job& job);
-    // Fails: not-finished before the first accepted block.
-    [[nodiscard]] proto::Parsed<Model> newest_model(const proto::Job& job);
-    [[nodiscard]] proto::Parsed<proto::Job> find_finished(const std::string& id);
-    // The job, when it has that model.
-    [[nodiscard]] proto::Parsed<proto::Job> find_with_model(
-        const std::string& id, const std::optional<std::uint32_t>& alternative
-    );
     // The request of a job to start from; what the new one needs of it goes to `inputs`.
     // Fails: as find() and find_finished().
     [[nodiscard]] proto::Parsed<proto::JobRequest> find_origin(
@@ -205,6 +147,7 @@ class JobService {
     RunningJobs running_;
     Capacity capacity_;
     Preparations preparations_;
+    JobModels models_;
     std::atomic<bool> draining_ = false;
     std::atomic<bool> queue_was_full_ = false;
     std::mutex mutex_;

@@ -307,7 +307,7 @@ std::vector<Limit> limits_of_models(const proto::RequestLimits& requests) {
         ),
         limit(
             "gzipped_model_bytes_max",
-            JobService::kGzippedBytesMax,
+            JobModels::kGzippedBytesMax,
             "bytes",
             "Of a GLB that is sent with gzip; larger ones are had as they are alone."
         ),

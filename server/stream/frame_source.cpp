@@ -71,7 +71,7 @@ FrameSource::FramePointer FrameSource::whole_frame(
     if (const auto known = find(key)) {
         return is_wanted(known->any_block) ? frame_of(known) : nullptr;
     }
-    const auto whole = service_.whole_state(job_id, seq);
+    const auto whole = service_.models().whole_state(job_id, seq);
     if (!whole || !is_wanted(whole->any_block)) {
         return nullptr;
     }
