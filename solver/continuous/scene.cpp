@@ -150,6 +150,10 @@ class MeshBuilder {
     }
 
     Scene finish() {
+        // Of a part, all that has a material may have been cut off.
+        std::erase_if(mesh_.primitives, [](const Primitive& primitive) {
+            return primitive.indices.empty();
+        });
         Scene scene;
         if (mesh_.primitives.empty()) {
             return scene;  // glTF has no meshes without parts
@@ -187,6 +191,9 @@ class MeshBuilder {
         const FaceAxes& axes,
         NormalAt normal_at
     ) {
+        if (polygon.size() < 3) {
+            return;  // it only touched the box
+        }
         const auto first = static_cast<std::uint32_t>(primitive.positions.size());
         for (const Point& corner : polygon) {
             add_vertex(primitive, corner, axes, normal_at(corner));

@@ -33,6 +33,7 @@ Vec3 moved(const Vec3& v, const Vec3& offset) {
 tinygltf::Primitive write_primitive(
     const Primitive& primitive, const Kit& kit, int material, GltfBuffer& buffer
 ) {
+    check(!primitive.indices.empty(), "a part of a mesh without triangles");
     tinygltf::Primitive written;
     written.mode = TINYGLTF_MODE_TRIANGLES;
     written.material = material;

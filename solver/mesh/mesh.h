@@ -50,9 +50,10 @@ struct Material {
     friend bool operator==(const Material&, const Material&) = default;
 };
 
-// Triangles of one material. positions, normals and colors have one entry per vertex; a colour is
-// linear RGB in 0 ... 255 that multiplies the material's. texture_coordinates has one entry per
-// vertex or none at all. Front faces are counter-clockwise.
+// Triangles of one material, one at least: glTF has no parts of meshes without. positions, normals
+// and colors have one entry per vertex; a colour is linear RGB in 0 ... 255 that multiplies the
+// material's. texture_coordinates has one entry per vertex or none at all. Front faces are
+// counter-clockwise.
 struct Primitive {
     std::uint32_t material = 0;
     std::vector<Vec3> positions;

@@ -96,15 +96,31 @@ def sources(server):
     return found
 
 
+def _frames(server, job):
+    with WebSocketClient(server.port, f"/v1/jobs/{job['id']}/stream?partial=glb") as client:
+        return [StateFrame(message) for message in client.messages()
+                if isinstance(message, bytes)]
+
+
 @pytest.fixture(scope="module")
 def frames(server):
     """The GLB frames of a job: of regions from its start, and a whole state."""
-    job = submit(server, {"example": YARD, "size": (30, 5, 30), "parameters": {
-        "weights": "uniform"}})
-    with WebSocketClient(server.port, f"/v1/jobs/{job['id']}/stream?partial=glb") as client:
-        found = [StateFrame(message) for message in client.messages()
-                 if isinstance(message, bytes)]
+    found = _frames(server, submit(server, {"example": YARD, "size": (30, 5, 30), "parameters": {
+        "weights": "uniform"}}))
     assert len(found) > 10
+    return found
+
+
+@pytest.fixture(scope="module")
+def solid_frames(server):
+    """Those of jobs of solids, whose blocks cut through faces and leave materials out."""
+    found = {}
+    for name, size in (("houses", (30, 8, 30)), ("roads", (60, 6, 60)), ("domes", (20, 9, 20)),
+                       ("skyscrapers", (24, 10, 24))):
+        job = server.submit(size, solver="continuous", example=name, seed=1)
+        found[name] = _frames(server, job)
+        assert len(found[name]) > 5
+        assert server.wait(job["id"])["state"] == "succeeded"
     return found
 
 
@@ -132,12 +148,13 @@ def restarting_server(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def files(sources, frames, whole_frame, server, tmp_path_factory):
+def files(sources, frames, solid_frames, whole_frame, server, tmp_path_factory):
     """Every kind of file on disk, path by name."""
     contents = {f"{source.name}: {name}": data for source in sources
                 for name, data in source.files.items()}
-    for frame in frames:
-        contents[f"frame of event {frame.seq}"] = frame.payload
+    for name, found in {"yard": frames, **solid_frames}.items():
+        for frame in found:
+            contents[f"frame of event {frame.seq} of {name}"] = frame.payload
     contents["frame of the whole"] = whole_frame[0].payload
     # A model of nothing at all is a file too.
     nothing = {"kind": "discrete", "name": "nothing", "pieces": [{"name": "air"}],
