@@ -353,7 +353,7 @@ std::optional<std::vector<std::pair<std::string, std::string>>> read_mirror(
     }
     for (const auto& [name, json] : value.json().items()) {
         const Value image(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_characters_max) {
+        if (count_characters(name) > limits.name_characters_max) {
             image.fault("the name is too long");
         } else if (auto text = image.string(limits.name_characters_max)) {
             mirror.emplace_back(name, std::move(*text));

@@ -24,7 +24,7 @@ void read_weights(const Value& value, const RequestLimits& limits, Parameters& p
     }
     for (const auto& [name, json] : value.json().items()) {
         const Value weight(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_characters_max) {
+        if (count_characters(name) > limits.name_characters_max) {
             weight.fault("the name is too long");
         } else if (const auto number = weight.number(0, 1e6)) {
             parameters.weights.emplace_back(name, *number);

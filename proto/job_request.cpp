@@ -25,7 +25,7 @@ OrderedJson read_tags(const Value& value, const RequestLimits& limits) {
     }
     for (const auto& [name, json] : value.json().items()) {
         const Value tag(json, value.pointer() + "/" + pointer_part(name), value.faults());
-        if (name.size() > limits.name_characters_max) {
+        if (count_characters(name) > limits.name_characters_max) {
             tag.fault("the name is too long");
         }
         tags[name] = tag.string(1024).value_or("");

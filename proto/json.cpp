@@ -2,16 +2,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace modelsynth::proto {
 
 namespace {
 
+// Reads a text and tells how far it came, which the library tells of its own errors alone.
+class Reading {
+  public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    Reading(const char* at, const char*& reached) : at_(at), reached_(&reached) {}
+
+    reference operator*() const { return *at_; }
+
+    Reading& operator++() {
+        *reached_ = ++at_;
+        return *this;
+    }
+
+    friend bool operator==(const Reading& a, const Reading& b) { return a.at_ == b.at_; }
+
+  private:
+    const char* at_;
+    const char** reached_;
+};
+
 // Walks a text without building anything and stops at the first thing that must not be built.
 class Scanner final : public nlohmann::json_sax<Json> {
   public:
-    explicit Scanner(const JsonLimits& limits) : limits_(limits) {}
+    Scanner(std::string_view text, const JsonLimits& limits)
+        : text_(text), reached_(text.data()), limits_(limits) {}
+
+    bool scan() {
+        const char* const end = text_.data() + text_.size();
+        return Json::sax_parse(Reading(text_.data(), reached_), Reading(end, reached_), this);
+    }
 
     bool null() override { return count(); }
 
@@ -63,14 +96,18 @@ class Scanner final : public nlohmann::json_sax<Json> {
         const std::string reason =
             dash == std::string::npos ? "syntax error" : text.substr(dash + 2);
         // Positions count from 1 and name the character after the last one read.
-        return fail(reason + " (at byte " + std::to_string(position > 0 ? position - 1 : 0) + ")");
+        return fail(reason, position);
     }
 
     [[nodiscard]] const std::string& error() const { return error_; }
 
   private:
-    bool fail(std::string why) {
-        error_ = std::move(why);
+    bool fail(const std::string& why) {
+        return fail(why, static_cast<std::size_t>(reached_ - text_.data()));
+    }
+
+    bool fail(const std::string& why, std::size_t position) {
+        error_ = why + " (at byte " + std::to_string(position > 0 ? position - 1 : 0) + ")";
         return false;
     }
 
@@ -91,6 +128,8 @@ class Scanner final : public nlohmann::json_sax<Json> {
                );
     }
 
+    std::string_view text_;
+    const char* reached_;
     const JsonLimits& limits_;
     std::size_t nodes_ = 0;
     std::size_t depth_ = 0;
@@ -128,9 +167,15 @@ std::string range_text(double min, double max) {
 
 }  // namespace
 
+std::size_t count_characters(std::string_view text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // not within a character
+    }));
+}
+
 Parsed<Json> parse_json(std::string_view text, const JsonLimits& limits) {
-    Scanner scanner(limits);
-    if (!Json::sax_parse(text, &scanner)) {
+    Scanner scanner(text, limits);
+    if (!scanner.scan()) {
         return tl::unexpected(make_problem("malformed-json", scanner.error()));
     }
     // The library takes a NUL for the end of the text, whatever follows.
@@ -207,10 +252,7 @@ std::optional<std::string> Value::string(std::size_t characters_max) const {
         return std::nullopt;
     }
     const auto& text = json_.get_ref<const std::string&>();
-    const auto characters = std::count_if(text.begin(), text.end(), [](char c) {
-        return (static_cast<unsigned char>(c) & 0xC0) != 0x80;  // not within a character
-    });
-    if (static_cast<std::size_t>(characters) > characters_max) {
+    if (count_characters(text) > characters_max) {
         fault("must have at most " + std::to_string(characters_max) + " characters");
         return std::nullopt;
     }

@@ -29,6 +29,9 @@ std::string dump(const Document& document) {
     return document.dump(-1, ' ', false, Document::error_handler_t::replace);
 }
 
+// Of a text in UTF-8.
+[[nodiscard]] std::size_t count_characters(std::string_view text);
+
 // Reads a text whole or not at all. Depth, size and duplicate keys are checked before anything is
 // built, since a deep document overflows the stack when it is copied or written.
 // Fails: malformed-json with the byte offset.

@@ -155,6 +155,8 @@ Problem make_problem(const std::string& name, std::string detail) {
 Problem problem_of(const Error& error) {
     const auto kind = [&error]() -> const char* {
         switch (error.code) {
+            case ErrorCode::kMalformed:
+                return "malformed-request";
             case ErrorCode::kInvalidArgument:
                 return "invalid-request";
             case ErrorCode::kTooLarge:

@@ -13,13 +13,21 @@ UnixMillis now_millis() {
         .count();
 }
 
+namespace {
+
+// Rounded down, before 1970 too.
+std::time_t seconds_of(UnixMillis time) { return time >= 0 ? time / 1000 : (time - 999) / 1000; }
+
+}  // namespace
+
 std::string to_rfc3339(UnixMillis time) {
-    const auto seconds = time >= 0 ? time / 1000 : (time - 999) / 1000;
-    return fmt::format(
-        "{:%Y-%m-%dT%H:%M:%S}.{:03d}Z",
-        fmt::gmtime(static_cast<std::time_t>(seconds)),
-        time - seconds * 1000
-    );
+    const std::time_t seconds = seconds_of(time);
+    return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03d}Z", fmt::gmtime(seconds), time - seconds * 1000);
+}
+
+// The program never sets a locale, so names are the English ones.
+std::string to_http_date(UnixMillis time) {
+    return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(seconds_of(time)));
 }
 
 }  // namespace modelsynth::proto

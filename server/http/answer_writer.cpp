@@ -1,5 +1,6 @@
 #include "server/http/answer_writer.h"
 
+#include "proto/timestamp.h"
 #include "server/stream/on_pool.h"
 
 #include <boost/asio/as_tuple.hpp>
@@ -41,7 +42,8 @@ std::string head_text(
         }
     }
     text += vary.empty() ? "" : "Vary: " + vary + "\r\n";
-    text += "X-Request-Id: " + exchange.request.id +
+    text += "Date: " + proto::to_http_date(proto::now_millis()) +
+            "\r\nX-Request-Id: " + exchange.request.id +
             "\r\nServer: modelsynthd\r\nX-Content-Type-Options: nosniff\r\n";
     if (length) {
         text += "Content-Length: " + std::to_string(*length) + "\r\n";

@@ -195,6 +195,15 @@ std::optional<Response> Api::check_head(Request& request) {
             request
         );
     }
+    const std::string coding = lower_case(request.header_list("content-encoding").value_or(""));
+    if (!coding.empty() && coding != "identity") {
+        Response response = problem_response(
+            make_problem("unsupported-media-type", "bodies are taken as they are, not coded"),
+            request
+        );
+        response.headers.emplace_back("Accept-Encoding", "identity");
+        return response;
+    }
     if (match.route->body != BodyKind::kOther && !is_taken(request, match.route->body)) {
         const bool is_upload = match.route->body == BodyKind::kUpload;
         const std::string taken =

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -141,7 +142,7 @@ class Connection {
             exchange.keep_alive = exchange.keep_alive && !refusal->close;
             co_return co_await writer_.write_whole(*refusal, exchange) && exchange.keep_alive;
         }
-        auto handle = [this, &exchange] { return context_.api->handle(exchange.request); };
+        auto handle = [this, &exchange] { return handle_or_excuse(exchange.request); };
         Response response = co_await on_pool(*context_.pool, handle);
         exchange.answer.job_id = response.job_id;
         if (response.wait) {
@@ -156,6 +157,24 @@ class Connection {
             response = std::move(answered);
         }
         co_return co_await respond(std::move(response), exchange);
+    }
+
+    // A fault of ours costs the request that met it, and no other.
+    Response handle_or_excuse(const Request& request) {
+        try {
+            return context_.api->handle(request);
+        } catch (const std::exception& error) {
+            log_event(
+                *context_.log,
+                spdlog::level::err,
+                "a request threw",
+                {{"request", request.id}, {"target", request.target}, {"what", error.what()}}
+            );
+            return problem_response(
+                proto::make_problem("internal", "the request ran into a fault of the server"),
+                request
+            );
+        }
     }
 
     // The job of a client that went away and was the only one who wanted it.

@@ -21,12 +21,12 @@ Parsed<std::uint64_t> start_of_events(const Call& call) {
     }
     if (const auto last = call.request.header("last-event-id")) {
         const auto value = parse_number(*last);
-        if (!value) {
+        if (!value && !is_whole_number(*last)) {
             return tl::unexpected(
                 make_problem("malformed-request", "Last-Event-ID must be a whole number")
             );
         }
-        after = *value;
+        after = value.value_or(proto::kSeedMax);
     }
     const auto page = call.service.events().read(call.id, 0, 0);
     if (!page) {

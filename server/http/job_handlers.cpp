@@ -67,7 +67,11 @@ Response list_jobs(const Call& call) {
         return refuse(call, limit.error());
     }
     query.limit = *limit;
-    query.cursor = call.request.query_field("cursor").value_or("");
+    const auto cursor = call.request.query_field("cursor");
+    if (cursor && cursor->empty()) {
+        return refuse(call, make_problem("malformed-request", "\"cursor\" is empty"));
+    }
+    query.cursor = cursor.value_or("");
     const auto page = call.service.list(query);
     if (!page) {
         return refuse(call, page.error());

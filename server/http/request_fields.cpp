@@ -20,6 +20,11 @@ std::optional<std::uint64_t> parse_number(const std::string& text) {
     return value;
 }
 
+bool is_whole_number(std::string_view text) {
+    text.remove_prefix(text.starts_with('-') ? 1 : 0);
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 std::optional<std::string> media_type(const Request& request) {
     const auto type = request.header("content-type");
     if (!type) {
@@ -85,12 +90,12 @@ Parsed<std::uint64_t> query_number(
         return otherwise;
     }
     const auto value = parse_number(*text);
-    if (!value) {
+    if (!value && !is_whole_number(*text)) {
         return tl::unexpected(make_problem(
             "malformed-request", "\"" + std::string(name) + "\" must be a whole number"
         ));
     }
-    if (*value < min || *value > max) {
+    if (!value || *value < min || *value > max) {
         return tl::unexpected(make_problem(
             "invalid-request",
             "\"" + std::string(name) + "\" must be from " + std::to_string(min) + " to " +
@@ -106,7 +111,10 @@ std::optional<std::uint64_t> preferred_wait(const Request& request) {
         if (!preference.starts_with("wait=")) {
             continue;
         }
-        const std::string digits = preference.substr(5);
+        std::string digits = preference.substr(5);
+        if (digits.size() > 2 && digits.front() == '"' && digits.back() == '"') {
+            digits = digits.substr(1, digits.size() - 2);  // a word or a string (RFC 7240 2)
+        }
         if (!digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos) {
             return std::min(kWaitSecondsMax, parse_number(digits).value_or(kWaitSecondsMax));
         }

@@ -22,6 +22,9 @@ inline constexpr std::size_t kIdempotencyKeyCharactersMax = 255;
 // Digits and nothing else.
 [[nodiscard]] std::optional<std::uint64_t> parse_number(const std::string& text);
 
+// Whether it is one, be it negative or more than a number holds.
+[[nodiscard]] bool is_whole_number(std::string_view text);
+
 // ASCII alone.
 [[nodiscard]] std::string lower_case(std::string text);
 

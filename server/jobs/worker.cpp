@@ -182,7 +182,7 @@ class ClaimRun {
                     stopped_or_failed(kept->error(), observer.solved_seconds());
                     return;
                 }
-                end.error = proto::to_json(proto::problem_of(kept->error()));
+                end.error = problem_text(proto::problem_of(kept->error()));
             }
             if (end.result.empty()) {
                 observer.end_candidate(end, {}, {}, series.is_complete());
@@ -342,12 +342,18 @@ class ClaimRun {
         }
     }
 
+    // As it stands in the job, which is where it occurred.
+    [[nodiscard]] std::string problem_text(proto::Problem problem) const {
+        problem.instance = "/v1/jobs/" + claim_.lease.job_id;
+        return proto::to_json(problem);
+    }
+
     // Ends the job with what there is of its model as its preview.
     void end_unfinished(proto::JobState state, const std::optional<proto::Problem>& problem) {
         Outcome outcome;
         outcome.state = state;
         if (problem) {
-            outcome.error = proto::to_json(*problem);
+            outcome.error = problem_text(*problem);
         }
         const LiveJob::State preview = live_->state();
         std::optional<Stored<std::unique_ptr<ArtifactStore::Pin>>> pin;
@@ -364,7 +370,7 @@ class ClaimRun {
     void fail(const proto::Problem& problem) {
         Outcome outcome;
         outcome.state = proto::JobState::kFailed;
-        outcome.error = proto::to_json(problem);
+        outcome.error = problem_text(problem);
         finish(std::move(outcome));
     }
 

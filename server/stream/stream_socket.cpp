@@ -1,6 +1,7 @@
 #include "server/stream/stream_socket.h"
 
 #include "proto/stream_message.h"
+#include "proto/timestamp.h"
 #include "server/stream/snapshot.h"
 
 #include <boost/asio/as_tuple.hpp>
@@ -58,6 +59,7 @@ net::awaitable<bool> StreamSocket::accept(
         response.set(beast::http::field::sec_websocket_protocol, "modelsynth.v1");
         response.set(beast::http::field::server, "modelsynthd");
         response.set("X-Request-Id", id);
+        response.set(beast::http::field::date, proto::to_http_date(proto::now_millis()));
     };
     socket_.set_option(websocket::stream_base::decorator(std::move(decorate)));
     auto [error] = co_await socket_.async_accept(request, kSocketToken);

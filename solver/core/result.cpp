@@ -1,7 +1,6 @@
 #include "solver/core/result.h"
 
-#include <cstdio>
-#include <cstdlib>
+#include <stdexcept>
 
 namespace modelsynth {
 
@@ -23,8 +22,7 @@ void check(bool condition, const char* why) {
     if (condition) {
         return;
     }
-    std::fprintf(stderr, "modelsynth: internal check failed: %s\n", why);
-    std::abort();
+    throw std::logic_error(std::string("internal check failed: ") + why);
 }
 
 }  // namespace modelsynth

@@ -12,6 +12,7 @@ namespace modelsynth {
 
 // What went wrong, for a program to branch on.
 enum class ErrorCode : std::uint8_t {
+    kMalformed,        // the input is not what it is said to be
     kInvalidArgument,  // the input cannot be done as it stands
     kTooLarge,         // a named limit is passed
     kContradiction,    // proved impossible
@@ -44,8 +45,9 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-// Ends the program when `condition` does not hold. For faults of our own code only; input is
-// answered with a Result. Always on: a wrong model is worse than none.
+// Throws std::logic_error when `condition` does not hold. For faults of our own code only; input is
+// answered with a Result. Always on: a wrong model is worse than none, and costs the job or the
+// request that met it, not the others.
 void check(bool condition, const char* why);
 
 }  // namespace modelsynth

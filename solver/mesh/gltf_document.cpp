@@ -39,6 +39,13 @@ std::size_t nesting_depth(std::span<const std::byte> json) {
     return deepest;
 }
 
+// No binary glTF at all.
+Error malformed_glb(std::string message) {
+    Error error = invalid_glb(std::move(message));
+    error.code = ErrorCode::kMalformed;
+    return error;
+}
+
 Result<void> check_container(std::span<const std::byte> bytes, const GlbReadLimits& limits) {
     if (bytes.size() > limits.bytes_max) {
         return tl::unexpected(
@@ -46,24 +53,24 @@ Result<void> check_container(std::span<const std::byte> bytes, const GlbReadLimi
         );
     }
     if (bytes.size() < 20 || std::memcmp(bytes.data(), "glTF", 4) != 0) {
-        return tl::unexpected(invalid_glb("does not begin with a binary glTF header"));
+        return tl::unexpected(malformed_glb("does not begin with a binary glTF header"));
     }
     if (read_u32(bytes, 4) != 2) {
-        return tl::unexpected(invalid_glb("is not of version 2"));
+        return tl::unexpected(malformed_glb("is not of version 2"));
     }
     if (read_u32(bytes, 8) != bytes.size()) {
-        return tl::unexpected(invalid_glb(
+        return tl::unexpected(malformed_glb(
             "says it has " + std::to_string(read_u32(bytes, 8)) + " bytes and has " +
             std::to_string(bytes.size())
         ));
     }
     const std::size_t json_size = read_u32(bytes, 12);
     if (json_size > bytes.size() - 20 || std::memcmp(bytes.data() + 16, "JSON", 4) != 0) {
-        return tl::unexpected(invalid_glb("has no whole JSON chunk"));
+        return tl::unexpected(malformed_glb("has no whole JSON chunk"));
     }
     if (nesting_depth(bytes.subspan(20, json_size)) > limits.json_depth_max) {
         return tl::unexpected(
-            invalid_glb("its JSON nests deeper than " + std::to_string(limits.json_depth_max))
+            malformed_glb("its JSON nests deeper than " + std::to_string(limits.json_depth_max))
         );
     }
     const std::size_t binary_at = 20 + json_size;
@@ -71,7 +78,7 @@ Result<void> check_container(std::span<const std::byte> bytes, const GlbReadLimi
         return {};
     }
     if (bytes.size() - binary_at < 8 || read_u32(bytes, binary_at) > bytes.size() - binary_at - 8) {
-        return tl::unexpected(invalid_glb("has no whole binary chunk"));
+        return tl::unexpected(malformed_glb("has no whole binary chunk"));
     }
     return {};
 }
@@ -119,7 +126,7 @@ Result<tinygltf::Model> parse_document(std::span<const std::byte> bytes) {
     }
     if (!loaded) {
         if (errors.find("json.exception") != std::string::npos) {
-            return tl::unexpected(invalid_glb("its JSON is malformed"));
+            return tl::unexpected(malformed_glb("its JSON is malformed"));
         }
         const std::string first_line = errors.substr(0, errors.find('\n'));
         return tl::unexpected(invalid_glb("cannot be read: " + first_line.substr(0, 200)));

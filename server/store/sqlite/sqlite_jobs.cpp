@@ -17,6 +17,27 @@ using proto::UnixMillis;
 
 namespace {
 
+// A place in the list as a client is given it: a number and a last digit that follows from it, so
+// that what was typed or cut short is told from what was given out.
+std::string cursor_of(std::int64_t place) {
+    constexpr int kBase = 36;
+    constexpr std::int64_t kStep = 11;
+    std::array<char, 16> digits;
+    char* end = std::to_chars(digits.data(), digits.data() + digits.size(), place, kBase).ptr;
+    end = std::to_chars(end, digits.data() + digits.size(), (place * kStep + 5) % kBase, kBase).ptr;
+    return {digits.data(), end};
+}
+
+std::optional<std::int64_t> place_of_cursor(const std::string& cursor) {
+    constexpr std::int64_t kPlaceMax = std::int64_t{1} << 53;
+    std::int64_t place = 0;
+    const auto parsed =
+        std::from_chars(cursor.data(), cursor.data() + cursor.size() - 1, place, 36);
+    const bool is_one =
+        parsed.ec == std::errc() && place > 0 && place <= kPlaceMax && cursor_of(place) == cursor;
+    return is_one ? std::optional(place) : std::nullopt;
+}
+
 // The job of an idempotency key, or nothing; a conflict when the key was used for another request.
 Stored<std::optional<Job>> job_of_key(
     Database& database,
@@ -158,11 +179,11 @@ Stored<Job> SqliteStore::find(const std::string& id) {
 Stored<JobPage> SqliteStore::list(const JobQuery& query) {
     std::int64_t before = std::numeric_limits<std::int64_t>::max();
     if (!query.cursor.empty()) {
-        const char* end = query.cursor.data() + query.cursor.size();
-        const auto parsed = std::from_chars(query.cursor.data(), end, before, 36);
-        if (parsed.ec != std::errc() || parsed.ptr != end || before <= 0) {
+        const auto place = place_of_cursor(query.cursor);
+        if (!place) {
             return failure(StoreErrorCode::kInvalid, "the cursor is not one that was given out");
         }
+        before = *place;
     }
     return with_reader<JobPage>([&](Database& database) -> Stored<JobPage> {
         Statement rows = database.prepare(
@@ -182,10 +203,7 @@ Stored<JobPage> SqliteStore::list(const JobQuery& query) {
         std::int64_t last = 0;
         while (rows.step()) {
             if (page.jobs.size() == query.limit) {
-                std::array<char, 16> digits;
-                const auto end =
-                    std::to_chars(digits.data(), digits.data() + digits.size(), last, 36).ptr;
-                page.next = std::string(digits.data(), end);
+                page.next = cursor_of(last);
                 break;
             }
             last = rows.integer(13);

@@ -133,8 +133,14 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
     for (std::size_t heading = 0; heading < 2 * topes.lines_.size(); ++heading) {
         const FamilySet around = topes.lines_[heading / 2].families;
         for (const FamilySet sides : topes.sides_) {
-            topes.composed_.push_back(topes.tope_of((sides & around) | topes.sides_along_[heading])
-            );
+            const auto along = topes.tope_of_.find((sides & around) | topes.sides_along_[heading]);
+            if (along == topes.tope_of_.end()) {
+                return tl::unexpected(Error{
+                    ErrorCode::kInvalidArgument,
+                    "some directions of faces are so nearly the same that it cannot be said how "
+                    "they lie to each other; make them the same, or set them further apart"});
+            }
+            topes.composed_.push_back(along->second);
         }
     }
     return topes;
