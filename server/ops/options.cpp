@@ -1,9 +1,10 @@
 #include "server/ops/options.h"
 
+#include "server/ops/number_checks.h"
+
 #include <CLI/CLI.hpp>
 
 #include <concepts>
-#include <sstream>
 
 namespace modelsynth::server {
 
@@ -13,7 +14,6 @@ constexpr std::uint64_t kBytesMax = std::uint64_t{1} << 50;
 constexpr std::uint64_t kBodyBytesMax = std::uint64_t{1} << 30;
 constexpr double kHoursMax = 24.0 * 3650;
 
-// A number from `least` to `most`, written in decimal digits: the library takes 010 for 8.
 void add_number(
     CLI::App& app,
     const std::string& name,
@@ -22,32 +22,17 @@ void add_number(
     std::uint64_t least,
     std::uint64_t most
 ) {
-    const auto check = [least, most](const std::string& text) -> std::string {
-        const bool is_number = !text.empty() && text.size() < 20 &&
-                               text.find_first_not_of("0123456789") == std::string::npos &&
-                               (text.size() == 1 || text.front() != '0');
-        const bool is_within = is_number && std::stoull(text) >= least && std::stoull(text) <= most;
-        return is_within ? ""
-                         : "must be a whole number from " + std::to_string(least) + " to " +
-                               std::to_string(most);
-    };
-    app.add_option(name, value, what)->check(check, "")->capture_default_str();
+    app.add_option(name, value, what)
+        ->check(check_whole_number(least, most), "")
+        ->capture_default_str();
 }
 
 void add_hours(
     CLI::App& app, const std::string& name, double& value, const std::string& what, double least
 ) {
-    const auto check = [least](const std::string& text) -> std::string {
-        std::istringstream stream(text);
-        double hours = 0;
-        // Written so that what is no number fails as well.
-        const bool is_within =
-            stream >> hours && stream.eof() && hours >= least && hours <= kHoursMax;
-        std::ostringstream why;
-        why << "must be a number from " << least << " to " << kHoursMax;
-        return is_within ? "" : why.str();
-    };
-    app.add_option(name, value, what)->check(check, "")->capture_default_str();
+    app.add_option(name, value, what)
+        ->check(check_number(least, kHoursMax), "")
+        ->capture_default_str();
 }
 
 void add_word(

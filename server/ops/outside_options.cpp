@@ -1,5 +1,7 @@
 #include "server/ops/outside_options.h"
 
+#include "server/ops/number_checks.h"
+
 #include <CLI/CLI.hpp>
 
 namespace modelsynth::server {
@@ -37,12 +39,12 @@ void add_webhook_options(CLI::App& app, Config& config) {
            "Seconds from the first try of a webhook to the second; each further pause is six times "
            "as long, and all are a fifth shorter or longer by chance"
     )
-        ->check(CLI::Range(0.001, 3600.0))
+        ->check(check_number(0.001, 3600), "")
         ->capture_default_str();
     app.add_option(
            "--webhook-seconds", webhooks.try_seconds, "For a receiver of webhooks to answer"
     )
-        ->check(CLI::Range(1, 300))
+        ->check(check_whole_number(1, 300), "")
         ->capture_default_str();
 }
 

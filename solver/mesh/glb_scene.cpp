@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace modelsynth {
 
@@ -34,7 +35,7 @@ Extra extra_of(const nlohmann::json& source) {
     if (source.is_object()) {
         Extra::Members members;
         for (const auto& [name, member] : source.items()) {
-            members.emplace_back(name, extra_of(member));
+            members.push_back({name, extra_of(member)});
         }
         return {std::move(members)};
     }
@@ -181,9 +182,9 @@ const Extra* Extra::find(std::string_view name) const {
         return nullptr;
     }
     const auto found = std::find_if(members->begin(), members->end(), [&](const auto& member) {
-        return member.first == name;
+        return member.name == name;
     });
-    return found == members->end() ? nullptr : &found->second;
+    return found == members->end() ? nullptr : &found->extra;
 }
 
 Result<GlbScene> read_glb_scene(std::span<const std::byte> bytes, const GlbReadLimits& limits) {

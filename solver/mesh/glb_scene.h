@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -18,8 +17,10 @@ namespace modelsynth {
 
 // What a file says beyond glTF ("extras"): any JSON.
 struct Extra {
+    // A class of its own: clang looks into a pair while it is still incomplete.
+    struct Member;
     using List = std::vector<Extra>;
-    using Members = std::vector<std::pair<std::string, Extra>>;  // by name
+    using Members = std::vector<Member>;  // by name
 
     std::variant<std::monostate, bool, double, std::string, List, Members> value;
 
@@ -27,6 +28,13 @@ struct Extra {
     [[nodiscard]] const Extra* find(std::string_view name) const;
 
     friend bool operator==(const Extra& a, const Extra& b);
+};
+
+struct Extra::Member {
+    std::string name;
+    Extra extra;
+
+    friend bool operator==(const Member&, const Member&) = default;
 };
 
 // A node that has a mesh.

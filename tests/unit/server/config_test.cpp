@@ -177,6 +177,8 @@ TEST_F(Configuration, NumbersAreTakenUpToTheirEdges) {
              {"--retention-hours", "0.001", "87600", "0.0009", "87601"},
              {"--drain-timeout", "0", "86400", "-1", "86401"},
              {"--connections-per-address-max", "0", "1000000", "-1", "1000001"},
+             {"--webhook-first-delay", "0.001", "3600", "0.0009", "3601"},
+             {"--webhook-seconds", "1", "300", "0", "301"},
              {"--data-bytes-max", "0", "1125899906842624", "-1", "1125899906842625"}}) {
         for (const char* good : {edge.least, edge.most}) {
             EXPECT_TRUE(parse({edge.option, good, "--forget-hours", "87600"}).config)
@@ -199,6 +201,7 @@ TEST_F(Configuration, NumbersAreTakenUpToTheirEdges) {
 TEST_F(Configuration, NumbersAreDecimal) {
     EXPECT_FALSE(parse({"--workers", "010"}).config);
     EXPECT_FALSE(parse({"--workers", "+1"}).config);
+    EXPECT_FALSE(parse({"--webhook-seconds", "010"}).config);
     EXPECT_EQ(parse({"--workers", "10"}).config->jobs.workers, 10U);
 }
 
