@@ -20,7 +20,7 @@ namespace {
 
 namespace http = boost::beast::http;
 
-constexpr auto kToken = net::as_tuple(net::use_awaitable);
+constexpr auto kWriteToken = net::as_tuple(net::use_awaitable);
 
 std::string head_text(
     const Response& response, Exchange& exchange, std::optional<std::uint64_t> length
@@ -61,7 +61,7 @@ std::string head_text(
 net::awaitable<bool> AnswerWriter::write_bytes(std::string_view bytes, Exchange& exchange) {
     stream_.expires_after(most_);
     auto buffer = net::buffer(bytes.data(), bytes.size());
-    auto [error, count] = co_await net::async_write(stream_, buffer, kToken);
+    auto [error, count] = co_await net::async_write(stream_, buffer, kWriteToken);
     exchange.answer.bytes += count;
     failed_ = failed_ || error;
     co_return !error;

@@ -42,7 +42,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-std::vector<std::string> list_items(const std::string& list) {
+std::vector<std::string> list_items(const std::string& list, Quoted wanted) {
     std::vector<std::string> items(1);
     bool quoted = false;
     for (const char c : list) {
@@ -50,7 +50,7 @@ std::vector<std::string> list_items(const std::string& list) {
             quoted = !quoted;
         } else if (!quoted && c == ',') {
             items.emplace_back();
-        } else if (!quoted && c != ' ' && c != '\t') {
+        } else if (quoted ? wanted == Quoted::kKept : c != ' ' && c != '\t') {
             items.back() += c;
         }
     }
@@ -106,15 +106,14 @@ Parsed<std::uint64_t> query_number(
 }
 
 std::optional<std::uint64_t> preferred_wait(const Request& request) {
-    for (const std::string& part : list_items(request.header_list("prefer").value_or(""))) {
+    // A value is a word or a string (RFC 7240 2).
+    const std::string list = request.header_list("prefer").value_or("");
+    for (const std::string& part : list_items(list, Quoted::kKept)) {
         const std::string preference = lower_case(part.substr(0, part.find(';')));
         if (!preference.starts_with("wait=")) {
             continue;
         }
-        std::string digits = preference.substr(5);
-        if (digits.size() > 2 && digits.front() == '"' && digits.back() == '"') {
-            digits = digits.substr(1, digits.size() - 2);  // a word or a string (RFC 7240 2)
-        }
+        const std::string digits = preference.substr(5);
         if (!digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos) {
             return std::min(kWaitSecondsMax, parse_number(digits).value_or(kWaitSecondsMax));
         }

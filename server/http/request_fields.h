@@ -31,8 +31,12 @@ inline constexpr std::size_t kIdempotencyKeyCharactersMax = 255;
 // What the body says it is, in lower case and without parameters; nothing when it says nothing.
 [[nodiscard]] std::optional<std::string> media_type(const Request& request);
 
-// The items of a comma-separated list, white space and what is quoted left out.
-[[nodiscard]] std::vector<std::string> list_items(const std::string& list);
+// The items of a comma-separated list without white space and quotes, and without what is quoted
+// unless that is wanted.
+enum class Quoted : std::uint8_t { kLeftOut, kKept };
+[[nodiscard]] std::vector<std::string> list_items(
+    const std::string& list, Quoted quoted = Quoted::kLeftOut
+);
 
 // A query field that nobody knows is mistyped; leaving it out would answer another question.
 [[nodiscard]] std::optional<proto::Problem> check_query(

@@ -22,7 +22,7 @@ namespace {
 namespace beast = boost::beast;
 namespace http = beast::http;
 
-constexpr auto kToken = net::as_tuple(net::use_awaitable);
+constexpr auto kReadToken = net::as_tuple(net::use_awaitable);
 constexpr std::size_t kReadAhead = 64 * 1024;
 
 // How a client begins that takes this port for one of TLS: a record of its handshake.
@@ -146,7 +146,8 @@ net::awaitable<RequestReader::ErrorCode> RequestReader::read_more(Clock::time_po
     auto space = buffer_.prepare(kPiece);
     stream_.expires_never();
     timer_.expires_at(until);
-    auto outcome = co_await (stream_.async_read_some(space, kToken) || timer_.async_wait(kToken));
+    auto outcome =
+        co_await (stream_.async_read_some(space, kReadToken) || timer_.async_wait(kReadToken));
     if (outcome.index() == 1) {
         co_return ErrorCode(beast::error::timeout);
     }
@@ -223,7 +224,7 @@ net::awaitable<std::optional<Response>> RequestReader::read_body(Exchange& excha
         if (exchange.version >= 11 && exchange.request.header("expect")) {
             static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
             auto bytes = net::buffer(kContinue);
-            co_await net::async_write(stream_, bytes, kToken);
+            co_await net::async_write(stream_, bytes, kReadToken);
         }
         parser_->eager(true);
         const ErrorCode error = co_await read_rest();
@@ -260,7 +261,7 @@ net::awaitable<RequestReader::ErrorCode> RequestReader::read_rest() {
     stream_.expires_never();
     timer_.expires_after(std::chrono::seconds(context_.limits.body_seconds));
     auto outcome = co_await (
-        http::async_read(stream_, buffer_, *parser_, kToken) || timer_.async_wait(kToken)
+        http::async_read(stream_, buffer_, *parser_, kReadToken) || timer_.async_wait(kReadToken)
     );
     if (outcome.index() == 1) {
         co_return ErrorCode(beast::error::timeout);

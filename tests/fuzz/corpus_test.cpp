@@ -76,8 +76,8 @@ TEST_P(FuzzCorpus, KeepsTheLaws) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, FuzzCorpus, testing::ValuesIn(kTargets), [](const auto& info) {
-    return std::string(info.param.name);
+INSTANTIATE_TEST_SUITE_P(Targets, FuzzCorpus, testing::ValuesIn(kTargets), [](const auto& target) {
+    return std::string(target.param.name);
 });
 
 TEST(FuzzCorpora, HaveATargetEach) {

@@ -101,9 +101,8 @@ def test_bodies_are_taken_as_they_are(server):
 
 
 def test_a_failure_says_whose_it_is(server):
-    impossible = request(parameters={"size": STRIPES["size"], "constraints": [
-        {"kind": "fixed", "cell": [0, 0, 0], "pieces": [STRIPES["pieces"][0]["name"]]},
-        {"kind": "forbidden", "cell": [0, 0, 0], "pieces": [STRIPES["pieces"][0]["name"]]}]})
+    impossible = request(example="castle", parameters={
+        "size": [6, 6, 6], "boundary": {"bottom": "air", "west": "grass"}})
     answer = server.request("POST", "/v1/jobs", impossible, {"Prefer": "wait=30"}).json()
     assert answer["state"] == "failed"
     assert answer["error"]["instance"] == f"/v1/jobs/{answer['id']}"

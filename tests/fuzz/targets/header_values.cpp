@@ -53,7 +53,7 @@ void check_part(const server::Response& response, const std::string& whole) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const server::Request request = request_of({reinterpret_cast<const char*>(data), size});
-    for (const std::size_t length : {0, 10, 2000}) {
+    for (const std::size_t length : {std::size_t{0}, std::size_t{10}, std::size_t{2000}}) {
         std::string whole(length, 'x');
         for (std::size_t i = 0; i < length; ++i) {
             whole[i] = static_cast<char>('a' + i % 26);

@@ -12,7 +12,9 @@ using namespace modelsynth;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string file(reinterpret_cast<const char*>(data), size);
-    const auto image = proto::decode_mask(testing::png_uri(testing::with_true_checksums(file)));
+    const auto image = proto::decode_mask(
+        modelsynth::testing::png_uri(modelsynth::testing::with_true_checksums(file))
+    );
     if (image) {
         law(image->width > 0 && image->height > 0);
         law(image->values.size() ==
