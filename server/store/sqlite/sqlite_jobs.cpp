@@ -17,24 +17,29 @@ using proto::UnixMillis;
 
 namespace {
 
-// A place in the list as a client is given it: a number and a last digit that follows from it, so
+// A place in the list as a client is given it: a number, and four digits that follow from it, so
 // that what was typed or cut short is told from what was given out.
+constexpr int kCursorBase = 36;
+constexpr std::size_t kCheckDigits = 4;
+
 std::string cursor_of(std::int64_t place) {
-    constexpr int kBase = 36;
-    constexpr std::int64_t kStep = 11;
-    std::array<char, 16> digits;
-    char* end = std::to_chars(digits.data(), digits.data() + digits.size(), place, kBase).ptr;
-    end = std::to_chars(end, digits.data() + digits.size(), (place * kStep + 5) % kBase, kBase).ptr;
-    return {digits.data(), end};
+    constexpr std::uint64_t kLeast = 36 * 36 * 36;  // of so many digits
+    const std::uint64_t mixed = static_cast<std::uint64_t>(place) * 0x9E37'79B9'7F4A'7C15 >> 32;
+    const std::uint64_t check = kLeast + mixed % (kLeast * 35);
+    std::array<char, 24> digits;
+    char* const end = digits.data() + digits.size();
+    char* const middle = std::to_chars(digits.data(), end, place, kCursorBase).ptr;
+    return {digits.data(), std::to_chars(middle, end, check, kCursorBase).ptr};
 }
 
 std::optional<std::int64_t> place_of_cursor(const std::string& cursor) {
-    constexpr std::int64_t kPlaceMax = std::int64_t{1} << 53;
+    if (cursor.size() <= kCheckDigits) {
+        return std::nullopt;
+    }
     std::int64_t place = 0;
-    const auto parsed =
-        std::from_chars(cursor.data(), cursor.data() + cursor.size() - 1, place, 36);
-    const bool is_one =
-        parsed.ec == std::errc() && place > 0 && place <= kPlaceMax && cursor_of(place) == cursor;
+    const char* const end = cursor.data() + cursor.size() - kCheckDigits;
+    const auto parsed = std::from_chars(cursor.data(), end, place, kCursorBase);
+    const bool is_one = parsed.ec == std::errc() && place > 0 && cursor_of(place) == cursor;
     return is_one ? std::optional(place) : std::nullopt;
 }
 

@@ -275,7 +275,17 @@ TEST_P(JobContract, PagesStayRightWhileJobsComeAndGo) {
 TEST_P(JobContract, ACursorThatWasNotGivenOutIsInvalid) {
     submit(new_job("a"));
     for (const std::string cursor :
-         {"!", "-1", "0", " 1", "1 ", "1.5", "zzzzzzzzzzzzzzzzzzzzzzzz", "\xc3\xbc"}) {
+         {"!",
+          "-1",
+          "0",
+          "1",
+          "zzz",
+          " 1",
+          "1 ",
+          "1.5",
+          "10000",
+          "zzzzzzzzzzzzzzzzzzzzzzzz",
+          "\xc3\xbc"}) {
         JobQuery query;
         query.cursor = cursor;
         EXPECT_EQ(error_of(jobs().list(query)), StoreErrorCode::kInvalid) << cursor;
