@@ -454,7 +454,7 @@ def test_all_together_keep_to_the_limits_of_one(server):
 
 
 @pytest.mark.parametrize("query,status", [
-    ("alternative=-1", 400), ("alternative=x", 400), ("alternative=", 400), ("alternative=1.0", 400),
+    ("alternative=-1", 422), ("alternative=x", 400), ("alternative=", 400), ("alternative=1.0", 400),
     ("alternative=64", 422), ("alternatives=1", 400)])
 @pytest.mark.parametrize("what", ["model.glb", "labels.json"])
 def test_a_bad_alternative_in_the_query_is_refused(server, series, what, query, status):

@@ -376,7 +376,7 @@ def test_what_has_no_figures(server):
     url = "/v1/examples/houses/figures.svg"
     assert server.get(f"{url}?figure={labels - 1}").status == 200
     for query, status, kind in ((f"figure={labels}", 422, "invalid-request"),
-                                ("figure=-1", 400, "malformed-request"),
+                                ("figure=-1", 422, "invalid-request"),
                                 ("figure=", 400, "malformed-request"),
                                 ("figure=1&figure=2", 400, "malformed-request"),
                                 ("number=1", 400, "malformed-request")):
@@ -493,7 +493,7 @@ def test_the_textures_of_an_example_are_those_of_its_models(make_server, form):
 def test_a_glb_that_is_none_is_refused(server):
     answer = server.request("POST", "/v1/examples", b"glTF but not really",
                             headers={"Content-Type": "model/gltf-binary"})
-    assert_problem(answer, 422, "invalid-request")
+    assert_problem(answer, 400, "malformed-request")
 
 
 def test_examples_belong_to_solvers(server):
