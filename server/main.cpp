@@ -45,7 +45,7 @@ std::string metrics_text(
 }
 
 // Every model is made in buffers of a few megabytes. The C library would give each back to the
-// system and take it anew, page by page: of small jobs a quarter of the time. What is kept in hand
+// system and take it anew, page by page: of small jobs a fifth of the time. What is kept in hand
 // is this much for each thread that makes models, at most.
 void keep_freed_memory() {
     constexpr int kKeptBytes = 32 << 20;

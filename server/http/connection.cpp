@@ -3,6 +3,7 @@
 #include "proto/problem.h"
 #include "server/http/answer_writer.h"
 #include "server/http/correlation.h"
+#include "server/http/excuse.h"
 #include "server/http/request_reader.h"
 #include "server/http/transport.h"
 #include "server/log/event_line.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -142,7 +142,11 @@ class Connection {
             exchange.keep_alive = exchange.keep_alive && !refusal->close;
             co_return co_await writer_.write_whole(*refusal, exchange) && exchange.keep_alive;
         }
-        auto handle = [this, &exchange] { return handle_or_excuse(exchange.request); };
+        auto handle = [this, &exchange] {
+            return answer_or_excuse(exchange.request, *context_.log, [&] {
+                return context_.api->handle(exchange.request);
+            });
+        };
         Response response = co_await on_pool(*context_.pool, handle);
         exchange.answer.job_id = response.job_id;
         if (response.wait) {
@@ -151,30 +155,16 @@ class Connection {
                 co_await cancel(response.wait->job_id);
             }
             auto answer = [this, &exchange, &response] {
-                return context_.api->answer_with_job(exchange.request, response, *response.wait);
+                return answer_or_excuse(exchange.request, *context_.log, [&] {
+                    return context_.api->answer_with_job(
+                        exchange.request, response, *response.wait
+                    );
+                });
             };
             Response answered = co_await on_pool(*context_.pool, answer);
             response = std::move(answered);
         }
         co_return co_await respond(std::move(response), exchange);
-    }
-
-    // A fault of ours costs the request that met it, and no other.
-    Response handle_or_excuse(const Request& request) {
-        try {
-            return context_.api->handle(request);
-        } catch (const std::exception& error) {
-            log_event(
-                *context_.log,
-                spdlog::level::err,
-                "a request threw",
-                {{"request", request.id}, {"target", request.target}, {"what", error.what()}}
-            );
-            return problem_response(
-                proto::make_problem("internal", "the request ran into a fault of the server"),
-                request
-            );
-        }
     }
 
     // The job of a client that went away and was the only one who wanted it.

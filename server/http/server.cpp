@@ -20,6 +20,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -88,6 +89,8 @@ void log_failure(const std::shared_ptr<spdlog::logger>& log, const std::exceptio
     }
     try {
         std::rethrow_exception(failure);
+    } catch (const std::logic_error& error) {
+        log_event(*log, spdlog::level::err, "a connection threw", {{"what", error.what()}});
     } catch (const std::exception& error) {
         log_event(*log, spdlog::level::debug, "connection ended", {{"what", error.what()}});
     }

@@ -39,6 +39,12 @@ void report_end(const WorkerContext& context, const proto::Job& job, double seco
     );
 }
 
+// A problem as it stands in the job, which is where it occurred.
+std::string problem_text(const Claim& claim, proto::Problem problem) {
+    problem.instance = "/v1/jobs/" + claim.lease.job_id;
+    return proto::to_json(problem);
+}
+
 // One claim in hand.
 class ClaimRun {
   public:
@@ -182,7 +188,7 @@ class ClaimRun {
                     stopped_or_failed(kept->error(), observer.solved_seconds());
                     return;
                 }
-                end.error = problem_text(proto::problem_of(kept->error()));
+                end.error = problem_text(claim_, proto::problem_of(kept->error()));
             }
             if (end.result.empty()) {
                 observer.end_candidate(end, {}, {}, series.is_complete());
@@ -342,18 +348,12 @@ class ClaimRun {
         }
     }
 
-    // As it stands in the job, which is where it occurred.
-    [[nodiscard]] std::string problem_text(proto::Problem problem) const {
-        problem.instance = "/v1/jobs/" + claim_.lease.job_id;
-        return proto::to_json(problem);
-    }
-
     // Ends the job with what there is of its model as its preview.
     void end_unfinished(proto::JobState state, const std::optional<proto::Problem>& problem) {
         Outcome outcome;
         outcome.state = state;
         if (problem) {
-            outcome.error = problem_text(*problem);
+            outcome.error = problem_text(claim_, *problem);
         }
         const LiveJob::State preview = live_->state();
         std::optional<Stored<std::unique_ptr<ArtifactStore::Pin>>> pin;
@@ -370,7 +370,7 @@ class ClaimRun {
     void fail(const proto::Problem& problem) {
         Outcome outcome;
         outcome.state = proto::JobState::kFailed;
-        outcome.error = problem_text(problem);
+        outcome.error = problem_text(claim_, problem);
         finish(std::move(outcome));
     }
 
@@ -444,9 +444,9 @@ void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t t
         );
         Outcome outcome;
         outcome.state = proto::JobState::kFailed;
-        outcome.error =
-            proto::to_json(proto::make_problem("internal", "the job ran into a fault of the server")
-            );
+        outcome.error = problem_text(
+            claim, proto::make_problem("internal", "the job ran into a fault of the server")
+        );
         outcome.finished = proto::now_millis();
         if (const auto job = context.jobs.finish(claim.lease, outcome)) {
             report_end(context, *job, claim.solved_seconds);

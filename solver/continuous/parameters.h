@@ -47,8 +47,8 @@ enum class SideKind : std::uint8_t {
     kFree,    // anything: the model goes on beyond, and is cut off there
 };
 
-// Twice the attempts of blocks of cells, which have other means than to try again; the few blocks
-// of what hangs together that need more than eight are rarely more than a second's work.
+// Twice the attempts of blocks of cells, which have other means than to try again: of plumbing, 5
+// of 180 blocks are given up with eight, 5 of 720 with so many.
 inline constexpr Blocks kDefaultBlocks = {{}, 16};
 
 // What a continuous synthesis can be asked for; plain data.

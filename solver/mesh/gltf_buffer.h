@@ -20,8 +20,8 @@ namespace modelsynth {
 [[nodiscard]] constexpr std::size_t padded(std::size_t length) { return (length + 3) / 4 * 4; }
 
 // The bytes of the binary chunk, and the tinygltf views and accessors over them. What is of one
-// kind, all positions say, shares a view: a view for each accessor would weigh more in the JSON
-// than small meshes do in numbers.
+// kind, all positions say, shares a view: with a view for each accessor they were a seventh of the
+// JSON of a castle.
 class GltfBuffer {
   public:
     explicit GltfBuffer(tinygltf::Model& model) : model_(model) { views_.fill(-1); }

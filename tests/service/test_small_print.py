@@ -119,7 +119,11 @@ FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3
          [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
 
 
-@pytest.mark.parametrize("moved", [5.43594e-05, 1e-5, 3e-5, 2e-4, 1e-3])
+# Of the directions of faces some are told apart, but not all the cells between them.
+LOST = 5.4359436e-05
+
+
+@pytest.mark.parametrize("moved", [LOST, 1e-5, 3e-5, 2e-4, 1e-3])
 def test_boxes_that_are_not_quite_straight_do_not_end_the_server(server, moved):
     top = box((0, 3, 0), (4, 4, 4))
     top[7][2] += 0.012329101562
@@ -131,5 +135,6 @@ def test_boxes_that_are_not_quite_straight_do_not_end_the_server(server, moved):
                    {"object": "roof", "vertices": top, "faces": FACES}]}
     answer = server.request("POST", "/v1/examples", example)
     assert answer.status in (201, 422), answer.body
-    assert answer.status == 201 or answer.json()["detail"]
+    if moved == LOST:
+        assert "so nearly the same" in answer.json()["errors"][0]["detail"]
     assert server.get("/healthz").status == 200

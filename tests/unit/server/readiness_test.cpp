@@ -9,6 +9,7 @@
 #include <sqlite3.h>
 
 #include <atomic>
+#include <stdexcept>
 
 namespace modelsynth::server {
 namespace {
@@ -27,6 +28,9 @@ class ArtifactsOnADisk final : public ArtifactStore {
     }
 
     Stored<std::unique_ptr<Pin>> put(std::string_view bytes) override {
+        if (is_broken) {
+            throw std::logic_error("a fault of ours");
+        }
         return artifacts_.put(bytes);
     }
 
@@ -41,6 +45,7 @@ class ArtifactsOnADisk final : public ArtifactStore {
     Stored<std::string> load(const std::string& digest) override { return artifacts_.load(digest); }
 
     std::atomic<std::uint64_t> free_bytes = 1'000'000;
+    std::atomic<bool> is_broken = false;
 
   private:
     ArtifactStore& artifacts_;
@@ -99,6 +104,23 @@ TEST_F(Readiness, ADiskThatIsNearlyFullTakesNoWorkUntilItHasRoomAgain) {
     EXPECT_EQ(readiness(*service), "ready");
     const std::string id = submit(*service, "[8,6,8]");
     EXPECT_TRUE(eventually([&] { return proto::is_ended(service->find(id)->state); }));
+}
+
+TEST_F(Readiness, AFaultCostsTheJobThatMetItAndNoOther) {
+    JobServiceConfig config;
+    config.workers = 1;
+    const auto service = make_service(config);
+    artifacts_.is_broken = true;
+    const std::string id = submit(*service, "[8,6,8]");
+    ASSERT_TRUE(eventually([&] { return proto::is_ended(service->find(id)->state); }));
+    const auto job = service->find(id);
+    EXPECT_EQ(job->state, proto::JobState::kFailed);
+    EXPECT_NE(job->error.find("/problems/internal"), std::string::npos) << job->error;
+    EXPECT_NE(job->error.find("\"instance\":\"/v1/jobs/" + id), std::string::npos) << job->error;
+    artifacts_.is_broken = false;
+    const std::string next = submit(*service, "[8,6,8]");
+    ASSERT_TRUE(eventually([&] { return proto::is_ended(service->find(next)->state); }));
+    EXPECT_EQ(service->find(next)->state, proto::JobState::kSucceeded);
 }
 
 TEST_F(Readiness, AFullQueueIsReadyAgainWhenATenthOfItIsFree) {
