@@ -15,7 +15,7 @@ std::string names_of(FamilySet families) {
         if ((families >> family & 1) == 0) {
             continue;
         }
-        families &= ~(FamilySet{1} << family);
+        families &= ~only(family);
         names += (names.empty()   ? "h"
                   : families == 0 ? " and h"
                                   : ", h") +

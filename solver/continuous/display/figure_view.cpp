@@ -16,8 +16,6 @@ namespace {
 // of planes, 1e-5.
 constexpr double kOnPlane = 1e-9;
 
-constexpr FamilySet bit(std::size_t family) { return FamilySet{1} << family; }
-
 // A side of a cell.
 struct Wall {
     std::optional<std::size_t> family;  // none: it is part of the cube's side
@@ -102,7 +100,7 @@ std::vector<Point> section(const Cell& part, const Point& normal) {
 // The part of a cell on one side of a family's plane; without walls when there is none.
 Cell part_of(const Cell& cell, std::size_t family, const Point& normal, double sign) {
     Cell part;
-    part.above = cell.above | (sign > 0 ? bit(family) : 0);
+    part.above = cell.above | (sign > 0 ? only(family) : 0);
     for (const Wall& wall : cell.walls) {
         auto corners = clipped(wall.corners, normal, sign);
         if (corners.size() >= 3) {
@@ -119,7 +117,7 @@ Cell part_of(const Cell& cell, std::size_t family, const Point& normal, double s
 std::vector<Cell> cells_of(const Topes& topes, FamilySet families) {
     std::vector<Cell> cells = {whole_cube()};
     for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        if ((families & bit(family)) == 0) {
+        if ((families & only(family)) == 0) {
             continue;
         }
         std::vector<Cell> parts;
@@ -151,7 +149,7 @@ class Viewer {
         FamilySet towards = 0;
         for (std::size_t family = 0; family < topes_.family_count(); ++family) {
             const bool is_towards = topes_.normals()[family].dot(to_viewer_) > 0;
-            towards |= is_towards ? relevant_ & bit(family) : 0;
+            towards |= is_towards ? relevant_ & only(family) : 0;
         }
         view_.is_point_hidden = object_at(towards) != kEmpty;
         std::stable_sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) {
@@ -184,7 +182,7 @@ class Viewer {
                 }
                 continue;
             }
-            const ObjectId beyond = object_at(cell.above ^ bit(*wall.family));
+            const ObjectId beyond = object_at(cell.above ^ only(*wall.family));
             if (beyond == object) {
                 continue;
             }
@@ -211,10 +209,10 @@ class Viewer {
         FamilySet through = 0;
         for (std::size_t family = 0; family < topes_.family_count(); ++family) {
             const Point& normal = topes_.normals()[family];
-            const bool is_through = (relevant_ & bit(family)) != 0 && wall.family != family &&
+            const bool is_through = (relevant_ & only(family)) != 0 && wall.family != family &&
                                     std::abs(normal.dot(a)) <= kOnPlane &&
                                     std::abs(normal.dot(b)) <= kOnPlane;
-            through |= is_through ? bit(family) : 0;
+            through |= is_through ? only(family) : 0;
         }
         return through;
     }
@@ -222,7 +220,7 @@ class Viewer {
     // Beyond an edge, in the plane of the wall, one is on the other side of each other plane that
     // passes through the edge. A surface goes on there when the same objects meet.
     [[nodiscard]] std::vector<Stroke> surface_edges(const Cell& cell, const Wall& wall) const {
-        const FamilySet own = bit(*wall.family);
+        const FamilySet own = only(*wall.family);
         return edges_where(wall, [&](const Point& a, const Point& b) {
             const FamilySet through = families_through(wall, a, b);
             const FamilySet next = cell.above ^ through;

@@ -111,7 +111,7 @@ FamilySet firm_families(const ExampleReading& reading, const Parameters& paramet
             const auto& [x, y, z] = rule->normal;
             for (const ObjectType& object : example.objects) {
                 if (const auto family = reading.find_family(object.turn * Point(x, y, z))) {
-                    firm |= FamilySet{1} << *family;
+                    firm |= only(*family);
                 }
             }
         }
@@ -225,7 +225,7 @@ Reach reach_along(const Point& normal, const Bounds& box) {
 FamilySet listed_families(const ExampleReading& reading, const Parameters& parameters) {
     FamilySet listed = 0;
     for (const FamilyOffsets& family : parameters.offsets) {
-        listed |= FamilySet{1} << family_of(reading, family.normal);
+        listed |= only(family_of(reading, family.normal));
     }
     return listed;
 }

@@ -37,7 +37,7 @@ Circuit circuit_of(const Topes& topes, std::array<std::size_t, 3> families) {
     basis.col(1) = n[families[1]];
     const Eigen::Vector2d c = basis.colPivHouseholderQr().solve(n[families[2]]);
     return {
-        FamilySet{1} << families[0] | FamilySet{1} << families[1] | FamilySet{1} << families[2],
+        only(families[0]) | only(families[1]) | only(families[2]),
         {{families[0], std::abs(c[0])}, {families[1], std::abs(c[1])}, {families[2], 1}}};
 }
 
@@ -50,7 +50,7 @@ Circuit circuit_of(const Topes& topes, std::array<std::size_t, 4> families) {
         basis.col(i) = n[families[static_cast<std::size_t>(i)]];
     }
     for (const std::size_t family : families) {
-        set |= FamilySet{1} << family;
+        set |= only(family);
     }
     const Point c = basis.inverse() * n[families[3]];
     return {

@@ -17,6 +17,9 @@ inline constexpr std::size_t kFamiliesMax = 32;
 // A set of families, family i at bit i.
 using FamilySet = std::uint32_t;
 
+// The set of that family alone.
+[[nodiscard]] constexpr FamilySet only(std::size_t family) { return FamilySet{1} << family; }
+
 // Normals that differ by less than this angle (radians) are one; offsets that differ by less than
 // this share of the example's extent are one plane.
 inline constexpr double kNormalTolerance = 1e-5;

@@ -295,7 +295,7 @@ class Reader {
             const double away = distance(other, point);
             if (away <= 4 * tolerance_) {
                 other.is_seen = true;
-                here |= FamilySet{1} << other.family;
+                here |= only(other.family);
             } else {
                 nearest = std::min(nearest, away);
             }

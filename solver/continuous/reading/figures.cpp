@@ -47,7 +47,7 @@ Label Figures::add(Figure figure) {
             for (std::size_t family = 0; family < topes_.family_count(); ++family) {
                 const Tope beyond = topes_.across(static_cast<Tope>(tope), family);
                 if (at->first[tope] != at->first[beyond]) {
-                    relevant |= FamilySet{1} << family;
+                    relevant |= only(family);
                 }
             }
         }

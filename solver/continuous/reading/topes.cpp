@@ -16,8 +16,6 @@ namespace {
 constexpr double kParallel = 1e-7;
 constexpr double kNotParallel = 1e-5;
 
-constexpr FamilySet bit(std::size_t family) { return FamilySet{1} << family; }
-
 }  // namespace
 
 Tope Topes::tope_of(FamilySet sides) const {
@@ -52,9 +50,9 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
                         "three directions of faces are so nearly parallel to one line that it "
                         "cannot be said whether they are"});
                 }
-                families |= slope <= kParallel ? bit(other) : 0;
+                families |= slope <= kParallel ? only(other) : 0;
             }
-            families |= bit(a) | bit(b);
+            families |= only(a) | only(b);
             const auto known = std::find_if(
                 topes.lines_.begin(),
                 topes.lines_.end(),
@@ -68,7 +66,7 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
             topes.line_of_[b * m + a] = number;
         }
     }
-    const FamilySet all = m == kFamiliesMax ? ~FamilySet{0} : bit(m) - 1;
+    const FamilySet all = m == kFamiliesMax ? ~FamilySet{0} : (FamilySet{1} << m) - 1;
     if (topes.lines_.empty() || topes.lines_.front().families == all) {
         return tl::unexpected(Error{
             ErrorCode::kInvalidArgument,
@@ -84,8 +82,8 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
         FamilySet beyond = 0;
         for (std::size_t family = 0; family < m; ++family) {
             const bool is_positive =
-                (around & bit(family)) == 0 && topes.normals_[family].dot(along) > 0;
-            beyond |= is_positive ? bit(family) : 0;
+                (around & only(family)) == 0 && topes.normals_[family].dot(along) > 0;
+            beyond |= is_positive ? only(family) : 0;
         }
         topes.sides_along_.push_back(beyond);
         // Directions in which the planes around the line leave it, by angle.
@@ -93,7 +91,7 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
         const Point up = along.cross(right);
         std::vector<double> angles;
         for (std::size_t family = 0; family < m; ++family) {
-            if ((around & bit(family)) != 0) {
+            if ((around & only(family)) != 0) {
                 const Point in_plane = along.cross(topes.normals_[family]);
                 const double angle = std::atan2(in_plane.dot(up), in_plane.dot(right));
                 angles.push_back(angle);
@@ -109,8 +107,8 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
             FamilySet sides = beyond;
             for (std::size_t family = 0; family < m; ++family) {
                 const bool is_positive =
-                    (around & bit(family)) != 0 && topes.normals_[family].dot(sideways) > 0;
-                sides |= is_positive ? bit(family) : 0;
+                    (around & only(family)) != 0 && topes.normals_[family].dot(sideways) > 0;
+                sides |= is_positive ? only(family) : 0;
             }
             const auto [at, is_new] = insides.try_emplace(sides, Point::Zero());
             at->second += along;
@@ -123,7 +121,7 @@ Result<Topes> Topes::make(std::vector<Point> normals) {
     }
     for (std::size_t tope = 0; tope < topes.sides_.size(); ++tope) {
         for (std::size_t family = 0; family < m; ++family) {
-            const auto found = topes.tope_of_.find(topes.sides_[tope] ^ bit(family));
+            const auto found = topes.tope_of_.find(topes.sides_[tope] ^ only(family));
             topes.across_.push_back(
                 found == topes.tope_of_.end() ? static_cast<Tope>(tope) : found->second
             );

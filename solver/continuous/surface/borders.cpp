@@ -6,11 +6,7 @@
 
 namespace modelsynth::continuous {
 
-namespace {
-
-constexpr FamilySet bit(std::size_t family) { return FamilySet{1} << family; }
-
-}  // namespace
+namespace {}  // namespace
 
 const std::vector<Border>& BorderTable::at(Label edge, Heading heading) {
     const auto [found, is_new] = known_.try_emplace({edge, heading}, std::vector<Border>());
@@ -26,18 +22,18 @@ void BorderTable::fill(Label edge, Heading heading, std::vector<Border>& borders
     const Point along = topes.direction(heading);
     const FamilySet around = topes.lines()[heading / 2].families;
     for (std::size_t family = 0; family < topes.family_count(); ++family) {
-        if ((around & bit(family)) == 0 || (figures_.relevant(edge) & bit(family)) == 0) {
+        if ((around & only(family)) == 0 || (figures_.relevant(edge) & only(family)) == 0) {
             continue;
         }
         const Point left = topes.normals()[family].cross(along);
         const auto object_at = [&](double side, bool is_above) {
             FamilySet sides = topes.sides_along(heading);
             for (std::size_t other = 0; other < topes.family_count(); ++other) {
-                const bool is_positive =
-                    other == family
-                        ? is_above
-                        : (around & bit(other)) != 0 && side * topes.normals()[other].dot(left) > 0;
-                sides |= is_positive ? bit(other) : 0;
+                const bool is_positive = other == family
+                                             ? is_above
+                                             : (around & only(other)) != 0 &&
+                                                   side * topes.normals()[other].dot(left) > 0;
+                sides |= is_positive ? only(other) : 0;
             }
             return static_cast<ObjectId>(figure[topes.tope_of(sides)]);
         };
@@ -80,7 +76,7 @@ bool CornerTable::at(Label label, ObjectId object) {
                 const Tope beyond = topes.across(static_cast<Tope>(tope), family);
                 const bool is_here = static_cast<ObjectId>(figure[tope]) == object;
                 const bool is_beyond = static_cast<ObjectId>(figure[beyond]) == object;
-                changing |= is_here != is_beyond ? bit(family) : 0;
+                changing |= is_here != is_beyond ? only(family) : 0;
             }
         }
         found->second = rank_of(topes, changing) == 3;

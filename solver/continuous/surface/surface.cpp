@@ -18,8 +18,6 @@ namespace modelsynth::continuous {
 
 namespace {
 
-constexpr FamilySet bit(std::size_t family) { return FamilySet{1} << family; }
-
 // A border of an object in a plane along an edge of the arrangement. Without an edge it says that
 // the object has the plane for a face where no border is near.
 struct HalfEdge {
@@ -111,19 +109,19 @@ class SurfaceBuilder {
         std::vector<std::size_t> counts;
         for (std::size_t family = 0; family < is_seen.size(); ++family) {
             counts.push_back(is_seen[family].size());
-            left |= counts.back() > 0 ? bit(family) : 0;
+            left |= counts.back() > 0 ? only(family) : 0;
         }
         for (std::size_t v = 0; v < arrangement_.vertex_count() && left != 0; ++v) {
             const auto site = static_cast<Site>(v);
             const FamilySet here = arrangement_.families(site) & left;
             for (std::size_t family = 0; family < topes_.family_count(); ++family) {
-                if ((here & bit(family)) == 0) {
+                if ((here & only(family)) == 0) {
                     continue;
                 }
                 const std::size_t number = arrangement_.plane_through(site, family);
                 if (std::exchange(is_seen[family][number], std::uint8_t{1}) == 0) {
                     collect_faces_at(site, family, number);
-                    left &= --counts[family] == 0 ? ~bit(family) : ~FamilySet{0};
+                    left &= --counts[family] == 0 ? ~only(family) : ~FamilySet{0};
                 }
             }
         }
@@ -146,7 +144,7 @@ class SurfaceBuilder {
             const Tope beyond = topes_.across(tope, family);
             const auto object = static_cast<ObjectId>(figure[tope]);
             if (beyond != tope && object != kEmpty && figure[beyond] != figure[tope]) {
-                const bool is_above = (topes_.sides(tope) & bit(family)) != 0;
+                const bool is_above = (topes_.sides(tope) & only(family)) != 0;
                 half_edges_.push_back({object, static_cast<std::uint8_t>(family), !is_above, number}
                 );
             }
@@ -289,7 +287,7 @@ class SurfaceBuilder {
             const Point there = way + side * topes_.normals()[plane.family] + aside;
             FamilySet sides = 0;
             for (std::size_t family = 0; family < topes_.family_count(); ++family) {
-                sides |= topes_.normals()[family].dot(there) > 0 ? bit(family) : 0;
+                sides |= topes_.normals()[family].dot(there) > 0 ? only(family) : 0;
             }
             return static_cast<ObjectId>(figure[topes_.tope_of(sides)]);
         };
@@ -349,7 +347,7 @@ class SurfaceBuilder {
             for (std::size_t v = 0; v < arrangement_.vertex_count(); ++v) {
                 const auto site = static_cast<Site>(v);
                 for (std::size_t f = 0; f < vertices_.size(); ++f) {
-                    if ((arrangement_.families(site) & bit(f)) != 0) {
+                    if ((arrangement_.families(site) & only(f)) != 0) {
                         vertices_[f][arrangement_.plane_through(site, f)].push_back(site);
                     }
                 }

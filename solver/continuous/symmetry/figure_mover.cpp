@@ -16,7 +16,7 @@ FigureMover::FigureMover(const Topes& topes, const Eigen::Matrix3d& turn) {
         for (std::size_t i = 0; i < families.size(); ++i) {
             const bool is_above = (topes.sides(static_cast<Tope>(t)) >> i & 1) != 0;
             if (is_above != families[i].is_turned_round) {
-                sides |= FamilySet{1} << families[i].family;
+                sides |= only(families[i].family);
             }
         }
         images_.push_back(topes.tope_of(sides));
