@@ -120,7 +120,8 @@ Result<std::vector<Label>> find_initial_labels(
     const Symmetries* symmetries,
     const SiteDomains& domains,
     const SiteWeights& weights,
-    std::vector<Label> plain
+    std::vector<Label> plain,
+    const std::stop_token& stop
 ) {
     RoughCells rough(arrangement.frame().cells);
     bool is_plain = true;
@@ -155,8 +156,11 @@ Result<std::vector<Label>> find_initial_labels(
             labels,
             options,
             {0, kInitialKey, 0, 0},
-            {}
+            stop
         );
+        if (result.outcome == BlockOutcome::kStopped) {
+            return tl::unexpected(cancelled());
+        }
         if (result.outcome == BlockOutcome::kAccepted) {
             return labels;
         }

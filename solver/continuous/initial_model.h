@@ -8,6 +8,7 @@
 #include "solver/core/site_weights.h"
 
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -23,14 +24,16 @@ inline constexpr double kBelowGround = 0.25;
 
 // A model to begin with that keeps to the domains: the plain labels, and where they do not fit,
 // what fits and is as plain as can be found. Symmetries may be null.
-// Fails: kContradiction with the place when it is proved that nothing fits, kGaveUp.
+// Fails: kContradiction with the place when it is proved that nothing fits, kGaveUp,
+// kCancelled when `stop` is requested.
 [[nodiscard]] Result<std::vector<Label>> find_initial_labels(
     const Relations& relations,
     const Arrangement& arrangement,
     const Symmetries* symmetries,
     const SiteDomains& domains,
     const SiteWeights& weights,
-    std::vector<Label> plain
+    std::vector<Label> plain,
+    const std::stop_token& stop = {}
 );
 
 }  // namespace modelsynth::continuous

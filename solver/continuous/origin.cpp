@@ -119,7 +119,8 @@ Result<Start> place_origin(
     const ExampleReading& reading,
     const Parameters& parameters,
     const Arrangement& arrangement,
-    const Origin& origin
+    const Origin& origin,
+    const std::stop_token& stop
 ) {
     const Parameters older = parameters_of(parameters, origin);
     const GridSize cells = cells_of(older);
@@ -127,7 +128,8 @@ Result<Start> place_origin(
         reading.topes(),
         make_planes(reading, older).offsets,
         {arranged_box(reading, older), cells, *older.spacing},
-        kVerticesMax
+        kVerticesMax,
+        stop
     );
     if (!before) {
         return tl::unexpected(std::move(before.error()));

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -54,7 +55,8 @@ struct Start {
     const ExampleReading& reading,
     const Parameters& parameters,
     const Arrangement& arrangement,
-    const Origin& origin
+    const Origin& origin,
+    const std::stop_token& stop = {}
 );
 
 }  // namespace modelsynth::continuous

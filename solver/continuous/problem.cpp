@@ -48,7 +48,7 @@ std::vector<FamilySet> stiff_families(const ExampleReading& reading, const Param
         for (std::size_t object = 1; object < stiff.size(); ++object) {
             if (named[object]) {
                 const Eigen::Matrix3d& turn = example.objects[object - 1].turn;
-                stiff[object] |= FamilySet{1} << *reading.find_family(turn * Point(x, y, z));
+                stiff[object] |= only(*reading.find_family(turn * Point(x, y, z)));
             }
         }
     }
@@ -129,16 +129,20 @@ void narrow_to_kept(
 Result<Problem> make_problem(
     std::shared_ptr<const ExampleReading> reading,
     const Parameters& parameters,
-    const Origin* origin
+    const Origin* origin,
+    const std::stop_token& stop
 ) {
     const Topes& topes = reading->topes();
     const Figures& figures = reading->figures();
     ModelPlanes planes = make_planes(*reading, parameters);
     const Arrangement::Frame frame = {
         arranged_box(*reading, parameters), cells_of(parameters), *parameters.spacing};
-    auto arrangement = Arrangement::make(topes, planes.offsets, frame, kVerticesMax);
+    auto arrangement = Arrangement::make(topes, planes.offsets, frame, kVerticesMax, stop);
     if (!arrangement) {
         return tl::unexpected(std::move(arrangement.error()));
+    }
+    if (stop.stop_requested()) {
+        return tl::unexpected(cancelled());
     }
     auto weights = make_weights(*reading, parameters, *arrangement);
     if (!weights) {
@@ -150,10 +154,13 @@ Result<Problem> make_problem(
     if (symmetries) {
         symmetries->narrow(domains);
     }
+    if (stop.stop_requested()) {
+        return tl::unexpected(cancelled());
+    }
     std::vector<Label> begun = std::move(plain);
     std::vector<std::uint8_t> is_kept;
     if (origin != nullptr) {
-        auto start = place_origin(*reading, parameters, *arrangement, *origin);
+        auto start = place_origin(*reading, parameters, *arrangement, *origin, stop);
         if (!start) {
             return tl::unexpected(std::move(start.error()));
         }
@@ -173,7 +180,8 @@ Result<Problem> make_problem(
         symmetries.get(),
         domains,
         *weights,
-        std::move(begun)
+        std::move(begun),
+        stop
     );
     if (!initial) {
         return tl::unexpected(std::move(initial.error()));

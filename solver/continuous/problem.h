@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -48,11 +49,12 @@ struct Problem {
 // What is asked for is asked of the whole model: a kept label that constraints do not allow is a
 // contradiction.
 // Fails: kTooLarge, kInvalidArgument; see Arrangement::make() and make_weights(); kContradiction,
-// kGaveUp; see find_initial_labels(); as place_origin().
+// kGaveUp; see find_initial_labels(); as place_origin(); kCancelled when `stop` is requested.
 [[nodiscard]] Result<Problem> make_problem(
     std::shared_ptr<const ExampleReading> reading,
     const Parameters& parameters,
-    const Origin* origin = nullptr
+    const Origin* origin = nullptr,
+    const std::stop_token& stop = {}
 );
 
 }  // namespace modelsynth::continuous

@@ -19,7 +19,9 @@ std::shared_ptr<const Problem> ProblemCache::find_locked(
 }
 
 Result<std::shared_ptr<const Problem>> ProblemCache::find_or_make(
-    const std::shared_ptr<const ExampleReading>& reading, const Parameters& parameters
+    const std::shared_ptr<const ExampleReading>& reading,
+    const Parameters& parameters,
+    const std::stop_token& stop
 ) {
     {
         const std::lock_guard lock(mutex_);
@@ -27,7 +29,7 @@ Result<std::shared_ptr<const Problem>> ProblemCache::find_or_make(
             return known;
         }
     }
-    auto made = make_problem(reading, parameters);
+    auto made = make_problem(reading, parameters, nullptr, stop);
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }

@@ -5,6 +5,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 
 namespace modelsynth::continuous {
 
@@ -14,7 +15,9 @@ class ProblemCache {
   public:
     // Fails: as make_problem().
     [[nodiscard]] Result<std::shared_ptr<const Problem>> find_or_make(
-        const std::shared_ptr<const ExampleReading>& reading, const Parameters& parameters
+        const std::shared_ptr<const ExampleReading>& reading,
+        const Parameters& parameters,
+        const std::stop_token& stop = {}
     );
 
   private:

@@ -23,8 +23,6 @@ namespace {
 constexpr std::size_t kBlockCountMax = 1'000'000;
 constexpr std::uint32_t kWholeAttempts = 8;
 
-Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
-
 double changed_from(std::span<const Label> initial, std::span<const Label> labels) {
     std::size_t changed = 0;
     for (std::size_t site = 0; site < labels.size(); ++site) {

@@ -4,6 +4,8 @@
 
 namespace modelsynth {
 
+Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped"}; }
+
 std::string pointer_part(std::string_view name) {
     std::string escaped;
     for (const char c : name) {

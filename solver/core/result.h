@@ -39,6 +39,9 @@ struct Error {
     std::any explanation = {};
 };
 
+// What a stop token that was requested makes of whatever was under way.
+[[nodiscard]] Error cancelled();
+
 // A name as part of a JSON Pointer (RFC 6901).
 [[nodiscard]] std::string pointer_part(std::string_view name);
 

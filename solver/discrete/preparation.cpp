@@ -22,7 +22,10 @@ constexpr GridSize kProbeSize = {16, 16, 16};
 }  // namespace
 
 Preparation::Preparation(
-    std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
+    std::shared_ptr<const Example> example,
+    const Parameters& parameters,
+    Problem problem,
+    const std::stop_token& stop
 )
     : example_(std::move(example)),
       parameters_(parameters),
@@ -30,32 +33,39 @@ Preparation::Preparation(
       order_(parameters.order.order) {
     if (const auto& blocks = *parameters_.blocks) {
         plain_model_ = find_plain_model(*example_, problem_);
-        if (plain_model_ && !can_change_middle(blocks->layout.size)) {
+        if (plain_model_ && !can_change_middle(blocks->layout.size, stop)) {
             is_plain_model_rigid_ = true;
             plain_model_.reset();
         }
     }
     if (parameters_.order.is_chosen_for_it) {
-        order_ = choose_order();
+        order_ = choose_order(stop);
     }
 }
 
 Result<std::shared_ptr<Preparation>> Preparation::make(
-    std::shared_ptr<const Example> example, const Parameters& parameters, const Origin* origin
+    std::shared_ptr<const Example> example,
+    const Parameters& parameters,
+    const Origin* origin,
+    const std::stop_token& stop
 ) {
     auto problem = make_problem(*example, parameters, origin);
     if (!problem && problem.error().code == ErrorCode::kContradiction) {
         const auto impossible = read_problem(*example, parameters, origin);
         return tl::unexpected(
-            explain(std::move(problem.error()), *example, parameters, *impossible, {})
+            explain(std::move(problem.error()), *example, parameters, *impossible, stop)
         );
     }
     if (!problem) {
         return tl::unexpected(std::move(problem.error()));
     }
-    return std::shared_ptr<Preparation>(
-        new Preparation(std::move(example), parameters, std::move(*problem))
+    std::shared_ptr<Preparation> made(
+        new Preparation(std::move(example), parameters, std::move(*problem), stop)
     );
+    if (stop.stop_requested()) {
+        return tl::unexpected(cancelled());
+    }
+    return made;
 }
 
 Box Preparation::middle(const GridSize& block) const {
@@ -69,14 +79,14 @@ Box Preparation::middle(const GridSize& block) const {
     return {{west, bottom, north}, {east, top, south}};
 }
 
-bool Preparation::can_change_middle(const GridSize& block) {
+bool Preparation::can_change_middle(const GridSize& block, const std::stop_token& stop) {
     auto search = take_search();
-    const bool can_change = !search->is_determined(middle(block), *plain_model_, {});
+    const bool can_change = !search->is_determined(middle(block), *plain_model_, stop);
     give_back(std::move(search));
     return can_change;
 }
 
-Order Preparation::choose_order() {
+Order Preparation::choose_order(const std::stop_token& stop) {
     const auto& blocks = *parameters_.blocks;
     const Box box = middle(blocks ? blocks->layout.size : kProbeSize);
     auto search = take_search();
@@ -86,7 +96,7 @@ Order Preparation::choose_order() {
             // What stands around it is not known yet, so nothing is asked of it.
             std::vector<Label> model(problem_.size.cell_count(), kNoLabel);
             const auto result =
-                search->modify(box, model, {1, order}, {0, kProbeKeys + probe, 0, 0}, {});
+                search->modify(box, model, {1, order}, {0, kProbeKeys + probe, 0, 0}, stop);
             count += result.outcome == BlockOutcome::kAccepted && result.backtracks == 0 ? 1U : 0U;
         }
         return count;
@@ -130,7 +140,9 @@ std::shared_ptr<Preparation> PreparationCache::find_locked(
 }
 
 Result<std::shared_ptr<Preparation>> PreparationCache::find_or_make(
-    const std::shared_ptr<const Example>& example, const Parameters& parameters
+    const std::shared_ptr<const Example>& example,
+    const Parameters& parameters,
+    const std::stop_token& stop
 ) {
     {
         const std::lock_guard lock(mutex_);
@@ -138,7 +150,7 @@ Result<std::shared_ptr<Preparation>> PreparationCache::find_or_make(
             return known;
         }
     }
-    auto made = Preparation::make(example, parameters);
+    auto made = Preparation::make(example, parameters, nullptr, stop);
     if (!made || (*made)->problem().size.cell_count() > kCellsMax) {
         return made;
     }

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::discrete {
@@ -23,11 +24,12 @@ namespace modelsynth::discrete {
 class Preparation {
   public:
     // Requires: defaults filled in and find_faults() empty (checked).
-    // Fails:    as make_problem().
+    // Fails:    as make_problem(); kCancelled when `stop` is requested.
     [[nodiscard]] static Result<std::shared_ptr<Preparation>> make(
         std::shared_ptr<const Example> example,
         const Parameters& parameters,
-        const Origin* origin = nullptr
+        const Origin* origin = nullptr,
+        const std::stop_token& stop = {}
     );
 
     Preparation(const Preparation&) = delete;
@@ -57,19 +59,23 @@ class Preparation {
     void give_back(std::unique_ptr<BoxSearch> search);
 
   private:
+    // Good for nothing when `stop` was requested meanwhile.
     Preparation(
-        std::shared_ptr<const Example> example, const Parameters& parameters, Problem problem
+        std::shared_ptr<const Example> example,
+        const Parameters& parameters,
+        Problem problem,
+        const std::stop_token& stop
     );
 
     // As large as that, or as the model.
     [[nodiscard]] Box middle(const GridSize& block) const;
 
     // Whether a block of that size, outside of which the plain model stands, has any choice.
-    [[nodiscard]] bool can_change_middle(const GridSize& block);
+    [[nodiscard]] bool can_change_middle(const GridSize& block, const std::stop_token& stop);
 
     // Of scan and entropy the one by which more boxes in the middle of the model succeed at once;
     // of equal ones scan, which is the faster.
-    [[nodiscard]] Order choose_order();
+    [[nodiscard]] Order choose_order(const std::stop_token& stop);
 
     std::shared_ptr<const Example> example_;
     Parameters parameters_;
@@ -89,7 +95,9 @@ class PreparationCache {
     // by its address.
     // Fails: as Preparation::make().
     [[nodiscard]] Result<std::shared_ptr<Preparation>> find_or_make(
-        const std::shared_ptr<const Example>& example, const Parameters& parameters
+        const std::shared_ptr<const Example>& example,
+        const Parameters& parameters,
+        const std::stop_token& stop = {}
     );
 
   private:

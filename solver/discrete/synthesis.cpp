@@ -23,8 +23,6 @@ namespace modelsynth::discrete {
 
 namespace {
 
-Error cancelled() { return {ErrorCode::kCancelled, "the synthesis was stopped", {}}; }
-
 // One run; the state that its steps share.
 class Run {
   public:

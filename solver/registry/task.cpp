@@ -213,10 +213,11 @@ Result<Finished> run_discrete(
     const auto& parameters = std::get<discrete::Parameters>(task.parameters);
     // What starts from one model is of no use to the next request.
     const auto preparation =
-        task.origin == nullptr ? preparations.discrete.find_or_make(example, parameters)
-                               : discrete::Preparation::make(
-                                     example, parameters, &std::get<discrete::Origin>(*task.origin)
-                                 );
+        task.origin == nullptr
+            ? preparations.discrete.find_or_make(example, parameters, stop)
+            : discrete::Preparation::make(
+                  example, parameters, &std::get<discrete::Origin>(*task.origin), stop
+              );
     if (!preparation) {
         return tl::unexpected(preparation.error());
     }
@@ -240,9 +241,9 @@ Result<Finished> run_continuous(
     const auto& solids = std::get<Solids>(task.example);
     const auto problem =
         task.origin == nullptr
-            ? preparations.continuous->find_or_make(solids, parameters)
+            ? preparations.continuous->find_or_make(solids, parameters, stop)
             : continuous::make_problem(
-                  solids, parameters, &std::get<continuous::Origin>(*task.origin)
+                  solids, parameters, &std::get<continuous::Origin>(*task.origin), stop
               )
                   .map([](continuous::Problem made) {
                       return std::make_shared<const continuous::Problem>(std::move(made));

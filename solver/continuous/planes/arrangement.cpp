@@ -43,12 +43,14 @@ class Builder {
         const Topes& topes,
         std::span<const PlaneOffsets> planes,
         const Arrangement::Frame& frame,
-        std::size_t vertices_max
+        std::size_t vertices_max,
+        const std::stop_token& stop
     )
         : topes_(topes),
           planes_(planes),
           frame_(frame),
           vertices_max_(vertices_max),
+          stop_(stop),
           extent_((frame.box.max - frame.box.min).maxCoeff()) {}
 
     // Every line of the arrangement once.
@@ -101,6 +103,10 @@ class Builder {
         normals.row(2) = along;
         const Eigen::Matrix3d inverse = normals.inverse();
         for (std::size_t i = 0; i < planes_[a].size(); ++i) {
+            if (stop_.stop_requested()) {
+                error_ = cancelled();
+                return;
+            }
             for (std::size_t j = 0; j < planes_[b].size(); ++j) {
                 const Point base = inverse * Point(planes_[a][i], planes_[b][j], 0);
                 walk(line, a, b, i, j, base);
@@ -124,7 +130,7 @@ class Builder {
         if (!part) {
             return;
         }
-        FamilySet around = FamilySet{1} << a | FamilySet{1} << b;
+        FamilySet around = only(a) | only(b);
         for (std::size_t family = 0; family < topes_.family_count(); ++family) {
             if ((topes_.lines()[line].families >> family & 1) == 0 || family == a || family == b) {
                 continue;
@@ -133,7 +139,7 @@ class Builder {
                 if (family < b) {
                     return;  // walked with that family
                 }
-                around |= FamilySet{1} << family;
+                around |= only(family);
             }
         }
         crossings_.clear();
@@ -154,9 +160,9 @@ class Builder {
             // Families cross at different angles, so that what is one point across a plane may be
             // a little less so along the line; see cross().
             std::size_t end = k + 1;
-            FamilySet families = around | FamilySet{1} << crossings_[k].family;
+            FamilySet families = around | only(crossings_[k].family);
             while (end < crossings_.size() && crossings_[end].t - crossings_[k].t <= 16 * on) {
-                families |= FamilySet{1} << crossings_[end].family;
+                families |= only(crossings_[end].family);
                 ++end;
             }
             if (end < crossings_.size() &&
@@ -303,6 +309,7 @@ class Builder {
     std::span<const PlaneOffsets> planes_;
     const Arrangement::Frame& frame_;
     std::size_t vertices_max_;
+    const std::stop_token& stop_;
     double extent_;
     std::vector<PlaneCrossing> crossings_;
     std::optional<Error> error_;
@@ -341,7 +348,8 @@ Result<Arrangement> Arrangement::make(
     const Topes& topes,
     std::span<const PlaneOffsets> planes,
     const Frame& frame,
-    std::size_t vertices_max
+    std::size_t vertices_max,
+    const std::stop_token& stop
 ) {
     for (const PlaneOffsets& offsets : planes) {
         if (offsets.size() > kPlanesMax) {
@@ -351,7 +359,7 @@ Result<Arrangement> Arrangement::make(
                 {}});
         }
     }
-    Builder builder(topes, planes, frame, vertices_max);
+    Builder builder(topes, planes, frame, vertices_max, stop);
     if (auto error = builder.walk_all()) {
         return tl::unexpected(std::move(*error));
     }

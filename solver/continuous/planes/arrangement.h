@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace modelsynth::continuous {
@@ -41,12 +42,13 @@ class Arrangement {
 
     // Requires: `topes` outlives it.
     // Fails: kTooLarge when there would be more vertices than vertices_max; kInvalidArgument where
-    // it cannot be said whether planes meet in one point.
+    // it cannot be said whether planes meet in one point; kCancelled when `stop` is requested.
     [[nodiscard]] static Result<Arrangement> make(
         const Topes& topes,
         std::span<const PlaneOffsets> planes,
         const Frame& frame,
-        std::size_t vertices_max
+        std::size_t vertices_max,
+        const std::stop_token& stop = {}
     );
 
     [[nodiscard]] std::size_t vertex_count() const { return positions_.size(); }
