@@ -418,26 +418,33 @@ class RequestReader {
     }
 
     void check_complete() {
-        // Without a usable size nothing can be said about places in the model.
-        if (!example_ || !size_is_usable_ || (inherits() && !earlier_)) {
+        if (!example_ || (inherits() && !earlier_)) {
+            return;
+        }
+        if (!size_is_usable_) {
+            check_names();
             return;
         }
         const Parameters given = solids_ ? Parameters(*solids_) : Parameters(parameters_);
         auto example = example_for(*example_, given);
         if (!example) {
             const bool is_turned = solids_ && solids_->variants != continuous::Variants();
-            faults_.add(
-                is_turned ? "/parameters/variants" : "/parameters/constraints",
-                example.error().message,
-                true
-            );
+            faults_.add_all("/parameters", example.error().faults);
+            if (example.error().faults.empty()) {
+                faults_.add(
+                    is_turned ? "/parameters/variants" : "/parameters/constraints",
+                    example.error().message,
+                    true
+                );
+            }
             return;
         }
         if (earlier_ && !are_read_alike(*example, earlier_->task.example)) {
             faults_.add(
                 "/parameters",
-                "variants, what has a dimension and so becomes other objects in them, symmetries "
-                "of shapes, and by how much faces are nudged must be those of that job"
+                "variants, what has a dimension and so becomes other objects in them, bounding "
+                "volumes, symmetries of shapes, and by how much faces are nudged must be those of "
+                "that job"
             );
             return;
         }
@@ -460,6 +467,23 @@ class RequestReader {
                     earlier_ ? &earlier_->task.parameters : nullptr
                 )
             );
+        }
+    }
+
+    // Without a usable size nothing can be said about places in the model; names mean the same in
+    // one of any size.
+    void check_names() {
+        parameters_.size.reset();
+        for (Fault& fault :
+             find_faults(*example_, with_defaults(Parameters(parameters_), *example_))) {
+            const auto has = [&fault](std::string_view part) {
+                return fault.pointer.find(part) != std::string::npos;
+            };
+            if (has("/boundary/") || has("/weights/") || has("/pieces/") || has("/mirror/")) {
+                faults_.add(
+                    "/parameters" + fault.pointer, std::move(fault.detail), fault.over_limit
+                );
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 #include "proto/job.h"
 #include "server/http/content_coding.h"
 #include "server/http/handlers.h"
+#include "server/http/query_reader.h"
 #include "server/http/representation.h"
 #include "server/http/request_fields.h"
 
@@ -55,6 +56,22 @@ Need need_of(const Route& route) {
         }
     }
     return need;
+}
+
+// What takes parameters reads them itself; pages and probes leave them to those who add some.
+constexpr std::array<const char*, 7> kWithQuery = {
+    "/v1/jobs",
+    "/v1/jobs/{id}",
+    "/v1/jobs/{id}/model.glb",
+    "/v1/jobs/{id}/labels.json",
+    "/v1/jobs/{id}/events",
+    "/v1/jobs/{id}/stream",
+    "/v1/examples/{id}/figures.svg"};
+
+bool takes_no_query(const Route& route) {
+    const std::string_view path = route.path;
+    return path.starts_with("/v1/") &&
+           (std::string_view(route.method) != "GET" || !is_among(kWithQuery, path));
 }
 
 constexpr std::array<Route, 32> kRoutes = {
@@ -231,6 +248,11 @@ Response Api::handle(const Request& request) {
         std::string_view(match.route->path).starts_with("/v1/jobs/{id}")) {
         if (const auto job = service_.find(match.id, request.caller); !job) {
             return problem_response(job.error(), request);
+        }
+    }
+    if (takes_no_query(*match.route)) {
+        if (auto problem = check_no_query(request)) {
+            return problem_response(*problem, request);
         }
     }
     Response response = match.route->handler(

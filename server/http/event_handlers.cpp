@@ -1,5 +1,6 @@
 #include "proto/job_request.h"
 #include "server/http/handlers.h"
+#include "server/http/query_reader.h"
 #include "server/http/request_fields.h"
 
 #include <algorithm>
@@ -14,11 +15,7 @@ namespace {
 
 // Where the client wants to go on: Last-Event-ID wins over `after`, since a browser sends it on
 // reconnecting while its URL still says the old `after`.
-Parsed<std::uint64_t> start_of_events(const Call& call) {
-    auto after = query_number(call.request, "after", 0, 0, proto::kSeedMax);
-    if (!after) {
-        return after;
-    }
+Parsed<std::uint64_t> start_of_events(const Call& call, std::optional<std::uint64_t> after) {
     if (const auto last = call.request.header("last-event-id")) {
         const auto value = parse_number(*last);
         if (!value && !is_whole_number(*last)) {
@@ -32,13 +29,13 @@ Parsed<std::uint64_t> start_of_events(const Call& call) {
     if (!page) {
         return tl::unexpected(make_problem("not-found", "there is no job " + call.id));
     }
-    if (*after > page->head) {
+    if (after.value_or(0) > page->head) {
         return tl::unexpected(make_problem(
             "invalid-request",
             "the log ends at " + std::to_string(page->head) + ", before " + std::to_string(*after)
         ));
     }
-    return after;
+    return after.value_or(0);
 }
 
 // What must hold before the connection becomes a WebSocket (RFC 6455 4.2.1); nothing: it does.
@@ -97,10 +94,12 @@ Response upgrade(SocketUpgrade to) {
 }  // namespace
 
 Response get_events(const Call& call) {
-    if (auto problem = check_query(call.request, {"after"})) {
+    QueryReader query(call.request);
+    const auto given = query.number("after", 0, proto::kSeedMax);
+    if (auto problem = query.finish()) {
         return refuse(call, *problem);
     }
-    const auto after = start_of_events(call);
+    const auto after = start_of_events(call, given);
     if (!after) {
         return refuse(call, after.error());
     }
@@ -123,35 +122,29 @@ Response event_stream_response(EventStreamBody body) {
 }
 
 Response get_stream(const Call& call) {
-    if (auto problem = check_query(call.request, {"after", "partial"})) {
+    QueryReader query(call.request);
+    const auto given = query.number("after", 0, proto::kSeedMax);
+    const auto partial = proto::partial_of(query.text("partial").value_or("none"));
+    if (!partial) {
+        query.fault("partial", "must be none, labels or glb");
+    }
+    if (partial == proto::Partial::kLabels && !has_cells(call)) {
+        query.fault("partial", "must be none or glb, since the job's model has no cells");
+    }
+    if (auto problem = query.finish()) {
         return refuse(call, *problem);
     }
     if (auto refusal = check_handshake(call)) {
         return *refusal;
     }
-    const auto after = start_of_events(call);
+    const auto after = start_of_events(call, given);
     if (!after) {
         return refuse(call, after.error());
-    }
-    const auto partial = proto::partial_of(call.request.query_field("partial").value_or("none"));
-    if (!partial) {
-        return refuse(
-            call, make_problem("invalid-request", "\"partial\" must be none, labels or glb")
-        );
-    }
-    if (*partial == proto::Partial::kLabels && !has_cells(call)) {
-        return refuse(
-            call,
-            make_problem("invalid-request", "the job's model has no cells; \"partial\" may be glb")
-        );
     }
     return upgrade({JobStream{call.id, *after, *partial}});
 }
 
 Response get_shared_stream(const Call& call) {
-    if (auto problem = check_query(call.request, {})) {
-        return refuse(call, *problem);
-    }
     if (auto refusal = check_handshake(call)) {
         return *refusal;
     }

@@ -2,6 +2,7 @@
 #include "proto/example_codec.h"
 #include "proto/job.h"
 #include "server/http/handlers.h"
+#include "server/http/query_reader.h"
 #include "server/http/representation.h"
 #include "server/http/request_fields.h"
 #include "solver/mesh/glb_writer.h"
@@ -127,9 +128,6 @@ Response get_example_success(const Call& call) {
 }
 
 Response get_example_figures(const Call& call) {
-    if (auto problem = check_query(call.request, {"figure"})) {
-        return refuse(call, *problem);
-    }
     const auto entry = call.service.examples().find(call.id, call.request.caller);
     if (!entry) {
         return no_example(call);
@@ -138,11 +136,12 @@ Response get_example_figures(const Call& call) {
     if (!count) {
         return refuse(call, make_problem("not-found", "an example on a grid has no figures"));
     }
-    const auto number = query_number(call.request, "figure", 0, 0, *count - 1);
-    if (!number) {
-        return refuse(call, number.error());
+    QueryReader query(call.request);
+    const auto number = query.number("figure", 0, *count - 1);
+    if (auto problem = query.finish()) {
+        return refuse(call, *problem);
     }
-    if (call.request.query_field("figure")) {
+    if (number) {
         return respond_with(
             call.request, in_memory("image/svg+xml", proto::figure_drawing(entry->example, *number))
         );

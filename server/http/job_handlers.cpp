@@ -1,6 +1,7 @@
 #include "proto/job.h"
 #include "proto/limits.h"
 #include "server/http/handlers.h"
+#include "server/http/query_reader.h"
 #include "server/http/representation.h"
 #include "server/http/request_fields.h"
 
@@ -13,9 +14,6 @@ namespace modelsynth::server {
 using proto::make_problem;
 
 Response submit_job(const Call& call) {
-    if (auto problem = check_query(call.request, {})) {
-        return refuse(call, *problem);
-    }
     const auto key = idempotency_key(call.request);
     if (!key) {
         return refuse(call, key.error());
@@ -45,33 +43,24 @@ Response submit_job(const Call& call) {
 }
 
 Response list_jobs(const Call& call) {
-    if (auto problem = check_query(call.request, {"state", "limit", "cursor"})) {
-        return refuse(call, *problem);
-    }
+    QueryReader given(call.request);
     JobQuery query;
     query.owner = call.request.caller.filter();
-    if (const auto state = call.request.query_field("state")) {
+    if (const auto state = given.text("state")) {
         query.state = proto::state_of(*state);
         if (!query.state) {
-            return refuse(
-                call,
-                make_problem(
-                    "invalid-request",
-                    "\"state\" must be queued, running, succeeded, failed or cancelled"
-                )
-            );
+            given.fault("state", "must be queued, running, succeeded, failed or cancelled");
         }
     }
-    const auto limit = query_number(call.request, "limit", kJobsPerPageDefault, 1, kJobsPerPageMax);
-    if (!limit) {
-        return refuse(call, limit.error());
-    }
-    query.limit = *limit;
-    const auto cursor = call.request.query_field("cursor");
-    if (cursor && cursor->empty()) {
-        return refuse(call, make_problem("malformed-request", "\"cursor\" is empty"));
-    }
+    query.limit = given.number("limit", 1, kJobsPerPageMax).value_or(kJobsPerPageDefault);
+    const auto cursor = given.text("cursor");
     query.cursor = cursor.value_or("");
+    if (cursor && cursor->empty()) {
+        given.fault_malformed("cursor", "is empty");
+    }
+    if (auto problem = given.finish()) {
+        return refuse(call, *problem);
+    }
     const auto page = call.service.list(query);
     if (!page) {
         return refuse(call, page.error());
@@ -84,26 +73,21 @@ Response list_jobs(const Call& call) {
 }
 
 Response get_job(const Call& call) {
-    if (auto problem = check_query(call.request, {"wait", "since"})) {
-        return refuse(call, *problem);
-    }
-    const auto wait = query_number(call.request, "wait", 0, 0, proto::kSeedMax);
-    if (!wait) {
-        return refuse(call, wait.error());
-    }
     const auto job = call.service.find(call.id);
     if (!job) {
         return refuse(call, job.error());
     }
-    const auto since = query_number(call.request, "since", job->head, 0, job->head);
-    if (!since) {
-        return refuse(call, since.error());
+    QueryReader given(call.request);
+    const std::uint64_t wait = given.number("wait", 0, proto::kSeedMax).value_or(0);
+    const std::uint64_t since = given.number("since", 0, job->head).value_or(job->head);
+    if (auto problem = given.finish()) {
+        return refuse(call, *problem);
     }
     Response response = respond_with_json(call.request, proto::to_json(*job));
-    const bool is_news = *since < job->head || proto::is_ended(job->state);
-    if (*wait > 0 && !is_news && response.status < 400) {
-        const std::chrono::seconds most(std::min(*wait, kWaitSecondsMax));
-        response.wait = WaitForJob{call.id, most, 200, 200, *since};
+    const bool is_news = since < job->head || proto::is_ended(job->state);
+    if (wait > 0 && !is_news && response.status < 400) {
+        const std::chrono::seconds most(std::min(wait, kWaitSecondsMax));
+        response.wait = WaitForJob{call.id, most, 200, 200, since};
     }
     return response;
 }
@@ -131,54 +115,27 @@ Response delete_job(const Call& call) {
 namespace {
 
 // Which of several models; nothing: the first, once the job has succeeded.
-proto::Parsed<std::optional<std::uint32_t>> wanted_alternative(const Call& call) {
-    if (!call.request.query_field("alternative")) {
-        return std::nullopt;
-    }
+std::optional<std::uint32_t> wanted_alternative(QueryReader& query) {
     const auto max = static_cast<std::uint64_t>(proto::RequestLimits{}.alternatives_max) - 1;
-    return query_number(call.request, "alternative", 0, 0, max).map([](std::uint64_t number) {
-        return std::optional(static_cast<std::uint32_t>(number));
-    });
+    const auto number = query.number("alternative", 0, max);
+    return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
 }
 
 std::string file_stem(const Call& call, const std::optional<std::uint32_t>& alternative) {
     return alternative ? call.id + "-" + std::to_string(*alternative) : call.id;
 }
 
-template <class Value, std::size_t kCount>
-const Value* find_named(
-    const std::array<std::pair<std::string_view, Value>, kCount>& known, const std::string& name
-) {
-    const auto found = std::find_if(known.begin(), known.end(), [&name](const auto& entry) {
-        return entry.first == name;
-    });
-    return found == known.end() ? nullptr : &found->second;
-}
-
-proto::Parsed<ModelFile> wanted_file(const Call& call) {
-    static constexpr std::array<std::pair<std::string_view, GlbProfile>, 3> kProfiles = {
+ModelFile wanted_file(QueryReader& query) {
+    static constexpr NamedValues<GlbProfile, 3> kProfiles = {
         {{"nodes", GlbProfile::kNodes},
          {"instanced", GlbProfile::kInstanced},
          {"merged", GlbProfile::kMerged}}};
-    static constexpr std::array<std::pair<std::string_view, GlbCompression>, 2> kCompressions = {
+    static constexpr NamedValues<GlbCompression, 2> kCompressions = {
         {{"none", GlbCompression::kNone}, {"meshopt", GlbCompression::kMeshopt}}};
-    const auto* profile =
-        find_named(kProfiles, call.request.query_field("profile").value_or("nodes"));
-    if (profile == nullptr) {
-        return tl::unexpected(
-            make_problem("invalid-request", "\"profile\" must be nodes, instanced or merged")
-        );
-    }
-    const auto* compression =
-        find_named(kCompressions, call.request.query_field("compression").value_or("none"));
-    if (compression == nullptr) {
-        return tl::unexpected(
-            make_problem("invalid-request", "\"compression\" must be none or meshopt")
-        );
-    }
-    return wanted_alternative(call).map([&](const std::optional<std::uint32_t>& alternative) {
-        return ModelFile{*profile, *compression, alternative};
-    });
+    return {
+        query.one_of("profile", kProfiles).value_or(GlbProfile::kNodes),
+        query.one_of("compression", kCompressions).value_or(GlbCompression::kNone),
+        wanted_alternative(query)};
 }
 
 using Reader = std::shared_ptr<ArtifactStore::Reader>;
@@ -194,14 +151,12 @@ proto::Parsed<Reader> open_file(const Call& call, const std::string& digest) {
 }  // namespace
 
 Response get_model(const Call& call) {
-    if (auto problem = check_query(call.request, {"profile", "compression", "alternative"})) {
+    QueryReader query(call.request);
+    const ModelFile file = wanted_file(query);
+    if (auto problem = query.finish()) {
         return refuse(call, *problem);
     }
-    const auto file = wanted_file(call);
-    if (!file) {
-        return refuse(call, file.error());
-    }
-    const auto digest = call.service.models().digest(call.id, *file);
+    const auto digest = call.service.models().digest(call.id, file);
     if (!digest) {
         return refuse(call, digest.error());
     }
@@ -213,12 +168,12 @@ Response get_model(const Call& call) {
     Representation representation;
     representation.media_type = "model/gltf-binary";
     representation.etag = "\"" + *digest + "\"";
-    representation.file_name = file_stem(call, file->alternative) + ".glb";
+    representation.file_name = file_stem(call, file.alternative) + ".glb";
     representation.content = std::move(*reader);
     if (size <= JobModels::kGzippedBytesMax) {
         representation.gzipped = [&call, &file] {
             return call.service.models()
-                .gzipped_digest(call.id, *file)
+                .gzipped_digest(call.id, file)
                 .and_then([&call](const std::string& gzip) { return open_file(call, gzip); })
                 .map([](Reader gzip) { return Content(std::move(gzip)); });
         };
@@ -235,14 +190,12 @@ Response get_preview(const Call& call) {
 }
 
 Response get_labels(const Call& call) {
-    if (auto problem = check_query(call.request, {"alternative"})) {
+    QueryReader query(call.request);
+    const auto alternative = wanted_alternative(query);
+    if (auto problem = query.finish()) {
         return refuse(call, *problem);
     }
-    const auto alternative = wanted_alternative(call);
-    if (!alternative) {
-        return refuse(call, alternative.error());
-    }
-    auto labels = call.service.models().labels_json(call.id, *alternative);
+    auto labels = call.service.models().labels_json(call.id, alternative);
     if (!labels) {
         return refuse(call, labels.error());
     }

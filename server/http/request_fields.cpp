@@ -8,7 +8,6 @@ namespace modelsynth::server {
 
 using proto::make_problem;
 using proto::Parsed;
-using proto::Problem;
 
 std::optional<std::uint64_t> parse_number(const std::string& text) {
     std::uint64_t value = 0;
@@ -55,54 +54,6 @@ std::vector<std::string> list_items(const std::string& list, Quoted wanted) {
         }
     }
     return items;
-}
-
-std::optional<Problem> check_query(
-    const Request& request, std::initializer_list<std::string_view> known
-) {
-    for (std::size_t i = 0; i < request.query.size(); ++i) {
-        const std::string& name = request.query[i].first;
-        if (std::find(known.begin(), known.end(), name) == known.end()) {
-            return make_problem(
-                "malformed-request", "there is no query parameter \"" + name.substr(0, 64) + "\""
-            );
-        }
-        for (std::size_t j = 0; j < i; ++j) {
-            if (request.query[j].first == name) {
-                return make_problem(
-                    "malformed-request", "the query parameter \"" + name + "\" stands twice"
-                );
-            }
-        }
-    }
-    return std::nullopt;
-}
-
-Parsed<std::uint64_t> query_number(
-    const Request& request,
-    std::string_view name,
-    std::uint64_t otherwise,
-    std::uint64_t min,
-    std::uint64_t max
-) {
-    const auto text = request.query_field(name);
-    if (!text) {
-        return otherwise;
-    }
-    const auto value = parse_number(*text);
-    if (!value && !is_whole_number(*text)) {
-        return tl::unexpected(make_problem(
-            "malformed-request", "\"" + std::string(name) + "\" must be a whole number"
-        ));
-    }
-    if (!value || *value < min || *value > max) {
-        return tl::unexpected(make_problem(
-            "invalid-request",
-            "\"" + std::string(name) + "\" must be from " + std::to_string(min) + " to " +
-                std::to_string(max)
-        ));
-    }
-    return *value;
 }
 
 std::optional<std::uint64_t> preferred_wait(const Request& request) {

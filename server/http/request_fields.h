@@ -38,20 +38,6 @@ enum class Quoted : std::uint8_t { kLeftOut, kKept };
     const std::string& list, Quoted quoted = Quoted::kLeftOut
 );
 
-// A query field that nobody knows is mistyped; leaving it out would answer another question.
-[[nodiscard]] std::optional<proto::Problem> check_query(
-    const Request& request, std::initializer_list<std::string_view> known
-);
-
-// A whole number of the query within bounds, or `otherwise` when it is not there.
-[[nodiscard]] proto::Parsed<std::uint64_t> query_number(
-    const Request& request,
-    std::string_view name,
-    std::uint64_t otherwise,
-    std::uint64_t min,
-    std::uint64_t max
-);
-
 // wait=N of a Prefer header (RFC 7240), capped; a malformed preference is ignored.
 [[nodiscard]] std::optional<std::uint64_t> preferred_wait(const Request& request);
 

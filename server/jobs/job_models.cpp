@@ -260,7 +260,11 @@ Parsed<Model> JobModels::newest_model(const Job& job) {
     }
     const auto labels = load_newest_labels(job);
     if (!labels && labels.error().code == StoreErrorCode::kNotFound) {
-        return tl::unexpected(make_problem("not-finished", "no block of the job was accepted yet"));
+        return tl::unexpected(
+            proto::is_ended(job.state)
+                ? make_problem("no-model", "the job ended before a block was accepted")
+                : make_problem("not-finished", "no block of the job was accepted yet")
+        );
     }
     return load_model(job, labels).map([](LoadedModel loaded) { return std::move(loaded.model); });
 }

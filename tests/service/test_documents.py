@@ -333,6 +333,12 @@ def walk_service(walk):
         walk.send("GET", "/problems/{name}", name)
 
 
+def walk_mistyped_queries(walk, openapi):
+    for method, path in openapi.operations():
+        if path.startswith("/v1/") and method != "HEAD":
+            walk.send(method, path, "castle", "?verbose=1", body={} if method == "POST" else None)
+
+
 def walk_expired_job(walk, server, job):
     """On a server that keeps models for a few seconds."""
     walk.server = server
@@ -355,6 +361,7 @@ def walked(tmp_path_factory, openapi):
         example = walk_examples(walk)
         walk_finished_jobs(walk)
         walk_unfinished_jobs(walk, example)
+        walk_mistyped_queries(walk, openapi)
         walk_expired_job(walk, brief, expiring)
         yield walk.answers
     finally:

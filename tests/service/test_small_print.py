@@ -138,3 +138,73 @@ def test_boxes_that_are_not_quite_straight_do_not_end_the_server(server, moved):
     if moved == LOST:
         assert "so nearly the same" in answer.json()["errors"][0]["detail"]
     assert server.get("/healthz").status == 200
+
+
+@pytest.mark.parametrize("query,pointers,status", [
+    ("state=lost&limit=0&limits=1", ["/limit", "/limits", "/state"], 400),
+    ("state=lost&limit=101", ["/limit", "/state"], 422),
+    ("limit=ten&cursor=", ["/cursor", "/limit"], 400),
+    ("limit=1&limit=2", ["/limit"], 400),
+    ("a%2Fb~c=1", ["/a~1b~0c"], 400),
+])
+def test_all_that_is_wrong_with_a_query_is_told(server, query, pointers, status):
+    answer = server.get(f"/v1/jobs?{query}")
+    assert answer.status == status, answer.body
+    told = answer.json()
+    assert sorted(error["pointer"] for error in told["errors"]) == pointers
+    assert all(error["detail"] for error in told["errors"])
+
+
+@pytest.mark.parametrize("query,pointers", [
+    ("profile=flat&compression=zip&alternative=x", ["/alternative", "/compression", "/profile"]),
+    ("profile=", ["/profile"]),
+])
+def test_all_that_is_wrong_with_the_form_of_a_model_is_told(server, query, pointers):
+    job = server.wait(server.submit((4, 4, 4))["id"])
+    told = server.get(f"/v1/jobs/{job['id']}/model.glb?{query}").json()
+    assert sorted(error["pointer"] for error in told["errors"]) == pointers
+
+
+@pytest.mark.parametrize("method,path", [
+    ("POST", "/v1/jobs"), ("POST", "/v1/jobs/{id}/cancel"), ("DELETE", "/v1/jobs/{id}"),
+    ("GET", "/v1/jobs/{id}/preview.glb"), ("GET", "/v1/examples"), ("POST", "/v1/examples"),
+    ("GET", "/v1/examples/castle"), ("DELETE", "/v1/examples/castle"),
+    ("GET", "/v1/examples/castle/model.glb"), ("GET", "/v1/examples/castle/pieces.glb"),
+    ("GET", "/v1/examples/castle/analysis"), ("GET", "/v1/examples/castle/success.svg"),
+    ("GET", "/v1/examples/houses/figures.svg"), ("GET", "/v1/solvers"),
+    ("GET", "/v1/solvers/discrete"), ("POST", "/v1/tickets"), ("GET", "/v1/limits"),
+])
+def test_a_parameter_that_a_resource_does_not_know_is_refused(server, method, path):
+    job = server.wait(server.submit((4, 4, 4))["id"])
+    path = path.replace("{id}", job["id"])
+    answer = server.request(method, f"{path}?verbose=1", {} if method == "POST" else None)
+    assert answer.status == 400, answer.body
+    assert [error["pointer"] for error in answer.json()["errors"]] == ["/verbose"]
+    assert server.get(f"/v1/jobs/{job['id']}").json()["state"] == "succeeded"
+
+
+@pytest.mark.parametrize("path", ["/", "/docs", "/healthz", "/readyz", "/metrics"])
+def test_pages_and_probes_take_any_parameter(server, path):
+    assert server.get(f"{path}?from=mail").status == 200
+
+
+def test_a_job_that_ended_before_its_first_block_has_no_preview_to_wait_for(server):
+    job = server.submit((6, 4, 6), parameters={
+        "size": [6, 4, 6], "constraints": [{"kind": "fixed", "pieces": ["grass"],
+                                            "box": {"min": [0, 3, 0], "max": [6, 4, 6]}}]})
+    assert server.wait(job["id"])["state"] == "failed"
+    answer = server.get(f"/v1/jobs/{job['id']}/preview.glb")
+    assert answer.status == 409 and answer.json()["type"] == "/problems/no-model", answer.body
+
+
+@pytest.mark.parametrize("size", [[0, 4, 6], "large", [10 ** 6, 10 ** 6, 10 ** 6]], ids=str)
+def test_unknown_names_are_told_beside_a_size_that_is_none(server, size):
+    request = {"solver": "discrete", "example": "castle", "parameters": {
+        "size": size, "boundary": {"bottom": "lava", "top": ["air", "stars"]},
+        "weights": {"dragon": 2},
+        "constraints": [{"kind": "fixed", "pieces": ["grass", "moat"], "cells": [[900, 0, 0]]}]}}
+    told = {error["pointer"] for error in server.request("POST", "/v1/jobs", request).json()["errors"]}
+    assert {pointer for pointer in told if not pointer.startswith("/parameters/size")} == {
+        "/parameters/boundary/bottom", "/parameters/boundary/top/1", "/parameters/weights/dragon",
+        "/parameters/constraints/0/pieces/1"}
+    assert told & {"/parameters/size", "/parameters/size/0"}
