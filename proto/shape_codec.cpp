@@ -47,11 +47,16 @@ void check_closed(const Value& value, const Shape& shape) {
     }
 }
 
-std::shared_ptr<const Shape> read(const Value& given, bool has_axes) {
+std::shared_ptr<const Shape> read(
+    const Value& given, bool has_axes, std::initializer_list<const char*> other_fields
+) {
     auto shape = std::make_shared<Shape>();
     Faults faults;
     const Value value(given.json(), given.pointer(), faults);
     ObjectReader reader(value);
+    for (const char* name : other_fields) {
+        static_cast<void>(reader.optional(name));
+    }
     // What is even alone is the box.
     const bool is_box = has_axes && value.json().is_object() && value.json().contains("even") &&
                         !value.json().contains("vertices") && !value.json().contains("faces");
@@ -92,9 +97,15 @@ std::shared_ptr<const Shape> read(const Value& given, bool has_axes) {
 
 }  // namespace
 
-std::shared_ptr<const Shape> read_shape(const Value& given) { return read(given, true); }
+std::shared_ptr<const Shape> read_shape(const Value& given) { return read(given, true, {}); }
 
-std::shared_ptr<const Shape> read_mesh(const Value& given) { return read(given, false); }
+std::shared_ptr<const Shape> read_shape(
+    const Value& given, std::initializer_list<const char*> other_fields
+) {
+    return read(given, true, other_fields);
+}
+
+std::shared_ptr<const Shape> read_mesh(const Value& given) { return read(given, false, {}); }
 
 OrderedJson write_shape(const Shape& shape) {
     OrderedJson vertices = OrderedJson::array();

@@ -3,6 +3,7 @@
 #include "proto/constraint_codec.h"
 #include "proto/continuous_codec.h"
 #include "proto/region_codec.h"
+#include "proto/shape_codec.h"
 
 #include <cstddef>
 #include <optional>
@@ -14,6 +15,9 @@ namespace modelsynth::proto {
 
 namespace {
 
+constexpr std::size_t kBoundingVolume = 6;  // of kRuleNames
+
+using continuous::BoundingVolumeRule;
 using continuous::ConnectedRule;
 using continuous::Constraint;
 using continuous::DimensionRule;
@@ -115,6 +119,24 @@ Rule read_rule(
     }
 }
 
+// It has the fields of a shape, and the object.
+Constraint read_bounding_volume(
+    ObjectReader& reader, const Value& whole, Constraint nothing, const RequestLimits& limits
+) {
+    Faults faults;
+    const Value alone(whole.json(), whole.pointer(), faults);
+    Constraint constraint = {BoundingVolumeRule{read_shape(alone, {"kind", "object"})}};
+    const bool is_sound = faults.empty();
+    whole.faults().add_all("", faults.take());
+    const auto object = reader.required("object");
+    const auto name = object ? object->string(limits.name_characters_max) : std::nullopt;
+    if (!name || !is_sound) {
+        return nothing;
+    }
+    constraint.objects = {*name};
+    return constraint;
+}
+
 // One that cannot be read keeps its place in the list, so that faults of the others are told at
 // theirs, as a rule that says nothing.
 Constraint read_constraint(const Value& value, const RequestLimits& limits) {
@@ -124,6 +146,9 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
     const auto kind = kind_value ? kind_value->one_of(continuous::kRuleNames) : std::nullopt;
     if (!kind) {
         return nothing;
+    }
+    if (*kind == kBoundingVolume) {
+        return read_bounding_volume(reader, value, nothing, limits);
     }
     Constraint constraint;
     constraint.rule = read_rule(*kind, reader, value, limits);
@@ -182,6 +207,11 @@ OrderedJson write_constraint(const Constraint& constraint) {
     }
     if (const auto* symmetry = std::get_if<SymmetryRule>(&constraint.rule)) {
         write_symmetry(*symmetry, written);
+        return written;
+    }
+    if (const auto* volume = std::get_if<BoundingVolumeRule>(&constraint.rule)) {
+        written["object"] = constraint.objects.front();
+        written.update(write_shape(*volume->shape));
         return written;
     }
     written["objects"] = constraint.objects;

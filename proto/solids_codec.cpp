@@ -299,7 +299,11 @@ bool check_constraints(const std::shared_ptr<const ExampleReading>& plain, const
     continuous::Parameters usual = continuous::fill_defaults({}, plain->example());
     const auto reading = ExampleReading::read_for(plain, usual);
     if (!reading) {
-        value.fault(reading.error().message, reading.error().code == ErrorCode::kTooLarge);
+        const Error& error = reading.error();
+        value.faults().add_all(value.pointer(), error.faults);
+        if (error.faults.empty()) {
+            value.fault(error.message, error.code == ErrorCode::kTooLarge);
+        }
         return false;
     }
     usual.constraints->resize(count);

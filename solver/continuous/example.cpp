@@ -4,6 +4,10 @@
 
 namespace modelsynth::continuous {
 
+bool operator==(const BoundingVolumeRule& one, const BoundingVolumeRule& other) {
+    return *one.shape == *other.shape;
+}
+
 ObjectId find_object(const Example& example, const std::string& name) {
     const auto found =
         std::find_if(example.objects.begin(), example.objects.end(), [&](const ObjectType& object) {

@@ -36,6 +36,8 @@ struct Shape {
     double smooth_degrees = 40;
     // The axes along which the boxes grow by the same factor: none, or two or three.
     std::array<bool, 3> is_even = {};
+
+    friend bool operator==(const Shape&, const Shape&) = default;
 };
 
 // A kind of solid: a material of its own, and what a request may call it.

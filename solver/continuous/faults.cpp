@@ -139,6 +139,12 @@ class FaultFinder {
             check_symmetry(pointer, *symmetry);
             return;
         }
+        if (std::holds_alternative<BoundingVolumeRule>(constraint.rule)) {
+            if (!constraint.objects.empty()) {
+                check_object(pointer + "/object", constraint.objects.front());
+            }
+            return;
+        }
         for (std::size_t i = 0; i < constraint.objects.size(); ++i) {
             const std::string& name = constraint.objects[i];
             if (!may_name_empty(constraint.rule) || name != kEmptyName) {

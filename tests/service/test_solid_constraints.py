@@ -80,6 +80,10 @@ CONSTRAINTS = {
     "reflection": ({"kind": "symmetry", "reflect": "z"}, {"mirror": {}}),
     "turn": ({"kind": "symmetry", "rotate": 2, "mirror": {"wall": "wall"}}, {}),
     "translation": ({"kind": "symmetry", "translate": [5, 0, 0]}, {"mirror": {}}),
+    "bounding volume": ({"kind": "bounding_volume", "object": "wall", "even": ["x", "z"],
+                         "vertices": [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]],
+                         "faces": [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]},
+                        {"smooth": 40}),
 }
 
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace modelsynth::continuous {
+
+struct Shape;  // example.h
 
 // Metres, in the model's frame.
 struct MetreBox {
@@ -85,12 +88,26 @@ struct SymmetryRule {
     friend bool operator==(const SymmetryRule&, const SymmetryRule&) = default;
 };
 
-using Rule = std::
-    variant<DimensionRule, ConnectedRule, FixedRule, ForbiddenRule, ProbabilityRule, SymmetryRule>;
+// In models this is put in the place of the object's boxes, whatever its shape is in the example
+// (thesis 4.6.4). Never null.
+struct BoundingVolumeRule {
+    std::shared_ptr<const Shape> shape;
+
+    friend bool operator==(const BoundingVolumeRule& one, const BoundingVolumeRule& other);
+};
+
+using Rule = std::variant<
+    DimensionRule,
+    ConnectedRule,
+    FixedRule,
+    ForbiddenRule,
+    ProbabilityRule,
+    SymmetryRule,
+    BoundingVolumeRule>;
 
 // As requests name the rules, in the order of the alternatives of Rule.
 inline constexpr std::array<const char*, std::variant_size_v<Rule>> kRuleNames = {
-    "dimension", "connected", "fixed", "forbidden", "probability", "symmetry"};
+    "dimension", "connected", "fixed", "forbidden", "probability", "symmetry", "bounding_volume"};
 
 // What requests call empty space, unless the example has an object of that name.
 inline constexpr const char* kEmptyName = "empty";
@@ -108,7 +125,8 @@ inline constexpr const char* kEmptyName = "empty";
 
 struct Constraint {
     Rule rule;
-    std::vector<std::string> objects = {};  // one for a dimension, none for a symmetry
+    std::vector<std::string> objects =
+        {};  // one for a dimension or a bounding volume, none for a symmetry
     Region region = {};
 
     friend bool operator==(const Constraint&, const Constraint&) = default;

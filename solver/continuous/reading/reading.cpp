@@ -94,7 +94,8 @@ void fill_mirrors_without_cuts(const Example& example, ReadingOptions& options) 
         return;
     }
     Example whole = with_whole_boxes(example);
-    ReadingOptions of_whole = {options.variants, {}, {}, 0, {}};
+    ReadingOptions of_whole;
+    of_whole.variants = options.variants;
     for (const ObjectId object : options.apart) {
         if (options.variants != Variants() && object <= whole.objects.size()) {
             of_whole.apart.push_back(object);
@@ -150,6 +151,14 @@ std::optional<std::size_t> ExampleReading::horizontal() const {
 }
 
 Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
+    Example example, ReadingOptions options
+) {
+    return make_unshared(std::move(example), std::move(options)).map([](auto made) {
+        return std::shared_ptr<const ExampleReading>(std::move(made));
+    });
+}
+
+Result<std::shared_ptr<ExampleReading>> ExampleReading::make_unshared(
     Example example, ReadingOptions options
 ) {
     if (auto faults = find_solid_faults(example); !faults.empty()) {
@@ -229,23 +238,29 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::make(
         }
     }
     made->relations_.emplace(relate(*made->figures_));
-    return std::shared_ptr<const ExampleReading>(std::move(made));
+    return made;
 }
 
 Result<std::shared_ptr<const ExampleReading>> ExampleReading::read_for(
     const std::shared_ptr<const ExampleReading>& reading, const Parameters& parameters
 ) {
-    ReadingOptions options = {parameters.variants, {}, {}, parameters.nudge, {}};
-    if (options.variants != Variants()) {
-        options.apart = turned_apart(reading->example(), parameters);
+    const auto& plain = reading->plain_ == nullptr ? reading : reading->plain_;
+    auto volumes = bounding_volumes_of(plain->example(), parameters);
+    if (!volumes) {
+        return tl::unexpected(std::move(volumes.error()));
     }
-    options.symmetries = symmetries_of_shapes(reading->example(), parameters);
+    Example example = with_bounding_volumes(plain->example(), *volumes);
+    ReadingOptions options = {
+        parameters.variants, {}, {}, std::move(*volumes), parameters.nudge, {}};
+    if (options.variants != Variants()) {
+        options.apart = turned_apart(example, parameters);
+    }
+    options.symmetries = symmetries_of_shapes(example, parameters);
     if (!options.symmetries.empty()) {
-        const Example plain = without_variant_objects(reading->example());
         if (options.variants == Variants()) {
-            options.apart = shapes_of(plain);
+            options.apart = shapes_of(example);
         }
-        fill_mirrors_without_cuts(plain, options);
+        fill_mirrors_without_cuts(example, options);
     }
     if (options.nudge_degrees > 0) {
         options.steps = steps_along_axes(parameters);
@@ -253,18 +268,23 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::read_for(
     if (options == reading->options_) {
         return reading;
     }
-    const std::lock_guard lock(reading->mutex_);
-    std::erase_if(reading->others_, [](const auto& other) { return other.second.expired(); });
-    for (const auto& [of_other, other] : reading->others_) {
+    if (options == plain->options_) {
+        return plain;
+    }
+    const std::lock_guard lock(plain->mutex_);
+    std::erase_if(plain->others_, [](const auto& other) { return other.second.expired(); });
+    for (const auto& [of_other, other] : plain->others_) {
         if (auto found = other.lock(); found && of_other == options) {
             return found;
         }
     }
-    auto made = make(without_variant_objects(reading->example()), options);
-    if (made) {
-        reading->others_.emplace_back(std::move(options), *made);
+    auto made = make_unshared(std::move(example), options);
+    if (!made) {
+        return tl::unexpected(std::move(made.error()));
     }
-    return made;
+    (*made)->plain_ = plain;
+    plain->others_.emplace_back(std::move(options), *made);
+    return std::move(*made);
 }
 
 }  // namespace modelsynth::continuous

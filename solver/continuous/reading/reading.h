@@ -6,6 +6,7 @@
 #include "solver/continuous/reading/figures.h"
 #include "solver/continuous/reading/nudge.h"
 #include "solver/continuous/reading/topes.h"
+#include "solver/continuous/shapes/bounding_volumes.h"
 #include "solver/core/relations.h"
 #include "solver/core/result.h"
 
@@ -25,6 +26,7 @@ struct ReadingOptions {
     std::vector<ObjectId> apart;  // those that become objects of their own; see turned_apart()
     // Those that shapes need images for, mirrors filled in; see shape_images.h.
     std::vector<SymmetryRule> symmetries;
+    std::vector<BoundingVolume> bounding_volumes;
     double nudge_degrees = 0;
     std::array<double, 3> steps = {};  // of the lattice to nudge to, metres; or 0
 
@@ -43,7 +45,7 @@ class ExampleReading {
 
     // The same example as a request with these parameters has it read: itself, as a rule. What is
     // read anew is kept while anyone has it. Requires: defaults filled in.
-    // Fails: kTooLarge.
+    // Fails: kInvalidArgument, as bounding_volumes_of(); kTooLarge.
     [[nodiscard]] static Result<std::shared_ptr<const ExampleReading>> read_for(
         const std::shared_ptr<const ExampleReading>& reading, const Parameters& parameters
     );
@@ -74,12 +76,17 @@ class ExampleReading {
     [[nodiscard]] std::optional<std::size_t> horizontal() const;
 
   private:
+    [[nodiscard]] static Result<std::shared_ptr<ExampleReading>> make_unshared(
+        Example example, ReadingOptions options
+    );
+
     ExampleReading(Example example, ReadingOptions options, std::vector<Point> normals, Topes topes)
         : example_(std::move(example)),
           options_(std::move(options)),
           normals_(std::move(normals)),
           topes_(std::move(topes)) {}
 
+    std::shared_ptr<const ExampleReading> plain_;  // without options; null: this is it
     Example example_;
     ReadingOptions options_;
     std::vector<Point> normals_;  // by family, as faces of the example have them

@@ -164,13 +164,6 @@ Example with_variant_objects(
     return example;
 }
 
-Example without_variant_objects(Example example) {
-    std::erase_if(example.objects, [](const ObjectType& type) {
-        return type.variant_of != kEmpty;
-    });
-    return example;
-}
-
 Example turned_solids(const Example& example, const TurnMatrix& turn) {
     Example made = example;
     for (Polyhedron& solid : made.polyhedra) {

@@ -34,9 +34,6 @@ using TurnMatrix = Eigen::Matrix3d;
     Example example, const std::vector<TurnMatrix>& turns, const std::vector<ObjectId>& apart
 );
 
-// The example without those.
-[[nodiscard]] Example without_variant_objects(Example example);
-
 // Its solids and bounds as a turn leaves them, each of the object it becomes.
 [[nodiscard]] Example turned_solids(const Example& example, const TurnMatrix& turn);
 

@@ -175,11 +175,16 @@ std::vector<ShapeCorner> triangles_of(const Shape& shape, const Bounds& box) {
     }
     const double least_cosine = std::cos(shape.smooth_degrees * std::numbers::pi / 180);
     const auto corner_at = [&](std::size_t face, std::uint32_t corner) {
-        Point normal = Point::Zero();
+        // The face itself counts however its own cosine is rounded.
+        Point normal = normals[face];
         for (const std::size_t other : faces_at[corner]) {
-            if (normals[other].normalized().dot(normals[face].normalized()) >= least_cosine) {
+            const double cosine = normals[other].normalized().dot(normals[face].normalized());
+            if (other != face && cosine >= least_cosine) {
                 normal += normals[other];
             }
+        }
+        if (normal.norm() < kTolerance * normals[face].norm()) {  // they look opposite ways
+            normal = normals[face];
         }
         return ShapeCorner{
             box.min + (shape.corners[corner] - own.min()).cwiseProduct(scale),

@@ -271,6 +271,31 @@ TEST(ShapeTriangles, AreSmoothUpToTheAngle) {
     }
 }
 
+TEST(ShapeTriangles, HaveTheNormalsOfTheirFacesWhereNothingIsSmooth) {
+    for (const double degrees : {0.0, 180.0}) {
+        Shape shape = *lathe(kCone, 12, {});
+        shape.smooth_degrees = degrees;
+        const std::vector<ShapeCorner> corners = triangles_of(shape, {{0, 0, 0}, {5, 7, 11}});
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+            const Point& a = corners[i].place;
+            const Point face =
+                (corners[i + 1].place - a).cross(corners[i + 2].place - a).normalized();
+            for (std::size_t j = i; j < i + 3; ++j) {
+                EXPECT_NEAR(corners[j].normal.norm(), 1, 1e-12);
+                EXPECT_TRUE(degrees > 0 || corners[j].normal.isApprox(face, 1e-9)) << i;
+            }
+        }
+    }
+    // Two sheets with nothing between them: all that is at a corner sums up to nothing.
+    Shape sheets;
+    sheets.corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    sheets.faces = {{0, 1, 2}, {0, 2, 1}};
+    sheets.smooth_degrees = 180;
+    for (const ShapeCorner& corner : triangles_of(sheets)) {
+        EXPECT_NEAR(corner.normal.norm(), 1, 1e-12);
+    }
+}
+
 TEST(BuiltInDomes, AreTrueToShapeInEverySize) {
     const auto reading = find_solids("domes");
     const Example& example = reading->example();
