@@ -116,19 +116,21 @@ class ClaimRun {
     };
 
     void solve(const proto::JobRequest& request) {
-        auto space = space_of(request.task.example, request.task.parameters, context_.preparations);
-        if (!space) {
-            fail(proto::problem_of(space.error()));
-            return;
-        }
-        live_ = std::make_shared<LiveJob>(std::move(*space));
-        context_.live.add(claim_.lease.job_id, live_);
         if (claim_.deadline_seconds) {
             const std::chrono::duration<double> left(
                 *claim_.deadline_seconds - claim_.solved_seconds
             );
             running_.set_deadline(Clock::now() + std::chrono::duration_cast<Clock::duration>(left));
         }
+        auto space = space_of(
+            request.task.example, request.task.parameters, context_.preparations, running_.token()
+        );
+        if (!space) {
+            stopped_or_failed(space.error(), seconds());
+            return;
+        }
+        live_ = std::make_shared<LiveJob>(std::move(*space));
+        context_.live.add(claim_.lease.job_id, live_);
         if (request.alternatives) {
             make_several(request.task, *request.alternatives);
         } else {
@@ -355,7 +357,8 @@ class ClaimRun {
         if (problem) {
             outcome.error = problem_text(claim_, *problem);
         }
-        const LiveJob::State preview = live_->state();
+        // Without a live model not even its space was known yet.
+        const LiveJob::State preview = live_ == nullptr ? LiveJob::State() : live_->state();
         std::optional<Stored<std::unique_ptr<ArtifactStore::Pin>>> pin;
         if (preview.any_block) {
             pin = context_.artifacts.put(proto::encode_labels(preview.model.labels));

@@ -8,14 +8,15 @@ namespace modelsynth::continuous {
 std::shared_ptr<const Problem> ProblemCache::find_locked(
     const ExampleReading& reading, const Parameters& parameters
 ) {
-    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-        return entry.problem->reading.get() == &reading && entry.parameters == parameters;
-    });
-    if (found == entries_.end()) {
-        return nullptr;
+    std::erase_if(entries_, [](const Entry& entry) { return entry.problem.expired(); });
+    for (auto at = entries_.begin(); at != entries_.end(); ++at) {
+        auto problem = at->problem.lock();
+        if (problem && problem->reading.get() == &reading && at->parameters == parameters) {
+            entries_.splice(entries_.begin(), entries_, at);
+            return problem;
+        }
     }
-    entries_.splice(entries_.begin(), entries_, found);
-    return entries_.front().problem;
+    return nullptr;
 }
 
 Result<std::shared_ptr<const Problem>> ProblemCache::find_or_make(
@@ -34,14 +35,12 @@ Result<std::shared_ptr<const Problem>> ProblemCache::find_or_make(
         return tl::unexpected(std::move(made.error()));
     }
     auto problem = std::make_shared<const Problem>(std::move(*made));
-    if (problem->arrangement.vertex_count() > kVerticesKeptMax) {
-        return problem;
-    }
+    const bool is_kept = problem->arrangement.vertex_count() <= kVerticesKeptMax;
     const std::lock_guard lock(mutex_);
     if (auto known = find_locked(*reading, parameters)) {
         return known;
     }
-    entries_.push_front({parameters, problem});
+    entries_.push_front({parameters, problem, is_kept ? problem : nullptr});
     if (entries_.size() > kEntriesMax) {
         entries_.pop_back();
     }

@@ -10,7 +10,7 @@
 namespace modelsynth::continuous {
 
 // Keeps the latest problems, so that requests that differ in their seed alone need not begin from
-// nothing. It changes no result. Thread-safe.
+// nothing, and knows large ones as long as somebody has them. It changes no result. Thread-safe.
 class ProblemCache {
   public:
     // Fails: as make_problem().
@@ -23,7 +23,8 @@ class ProblemCache {
   private:
     struct Entry {
         Parameters parameters;
-        std::shared_ptr<const Problem> problem;
+        std::weak_ptr<const Problem> problem;
+        std::shared_ptr<const Problem> kept;  // null: it is too large for that
     };
 
     static constexpr std::size_t kEntriesMax = 8;

@@ -188,14 +188,19 @@ std::optional<BlockLayout> block_layout(const Parameters& parameters) {
 }
 
 Result<std::shared_ptr<const ModelSpace>> space_of(
-    const Example& example, const Parameters& parameters, Preparations& preparations
+    const Example& example,
+    const Parameters& parameters,
+    Preparations& preparations,
+    const std::stop_token& stop
 ) {
     using Space = std::shared_ptr<const ModelSpace>;
     if (const auto* grid = std::get_if<DiscreteExample>(&example)) {
         return make_grid_space(*grid, model_size(parameters));
     }
     return preparations.continuous
-        ->find_or_make(std::get<Solids>(example), std::get<continuous::Parameters>(parameters))
+        ->find_or_make(
+            std::get<Solids>(example), std::get<continuous::Parameters>(parameters), stop
+        )
         .map([](auto problem) -> Space { return make_vertex_space(std::move(problem)); });
 }
 

@@ -95,7 +95,10 @@ struct Preparations {
 // What the labels of a task's model stand for. Fails: as run(), where the example and the
 // parameters alone tell so.
 [[nodiscard]] Result<std::shared_ptr<const ModelSpace>> space_of(
-    const Example& example, const Parameters& parameters, Preparations& preparations
+    const Example& example,
+    const Parameters& parameters,
+    Preparations& preparations,
+    const std::stop_token& stop = {}
 );
 
 // Runs the synthesis, from the start or from a checkpoint of the same task; see the solver's own

@@ -553,3 +553,29 @@ def test_the_addresses_of_the_guide_are_there(server):
     assert len(addresses) == 3
     for address in addresses:
         assert server.get(address).status == 200, address
+
+
+# Its planes meet in some two million points, which takes seconds to work out.
+LARGE = {"solver": "continuous", "example": "houses", "seed": 1,
+         "parameters": {"size": [150, 12, 150]}}
+
+
+def test_a_deadline_ends_a_job_while_it_is_prepared(server):
+    job = server.request("POST", "/v1/jobs", {**LARGE, "deadline": 0.05}).json()
+    ended = server.wait(job["id"])
+    assert ended["state"] == "failed", ended
+    assert ended["error"]["type"] == "/problems/deadline-exceeded"
+    assert [event["type"] for event in server.events(job["id"])] == ["queued", "failed"]
+    answer = server.get(f"/v1/jobs/{job['id']}/preview.glb")
+    assert answer.status == 409 and answer.json()["type"] == "/problems/no-model"
+
+
+def test_a_job_is_cancelled_while_it_is_prepared(server):
+    job = server.request("POST", "/v1/jobs", LARGE).json()
+    wait_until(lambda: server.get(f"/v1/jobs/{job['id']}").json()["state"] == "running")
+    server.request("POST", f"/v1/jobs/{job['id']}/cancel")
+    assert server.wait(job["id"])["state"] == "cancelled"
+    assert [event["type"] for event in server.events(job["id"])][-1] == "cancelled"
+    small = {**LARGE, "parameters": {"size": [12, 6, 12]}}
+    answer = server.request("POST", "/v1/jobs", small, headers={"Prefer": "wait=60"})
+    assert answer.status == 200 and answer.json()["state"] == "succeeded"

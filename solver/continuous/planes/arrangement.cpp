@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +31,22 @@ struct Meeting {
     Key key = 0;
     FamilySet families = 0;
 };
+
+// A vertex with its name.
+struct Named {
+    Key key = 0;
+    std::uint32_t meeting = 0;  // one of it
+    Point place;
+    std::size_t cell = 0;
+};
+
+// Meetings are put on heaps by name before they are sorted; equal names come on one.
+constexpr std::size_t kHeaps = 1024;
+
+std::size_t heap_of(Key key) { return key * 0x9E37'79B9'7F4A'7C15 >> 54; }
+
+// How many vertices are dealt with between two looks at the stop token.
+constexpr std::size_t kStopInterval = 4096;
 
 // A line of the arrangement and the vertices on it, one after the other.
 struct Walk {
@@ -364,32 +381,36 @@ Result<Arrangement> Arrangement::make(
         return tl::unexpected(std::move(*error));
     }
 
-    // Vertices by cell, then by name.
-    struct Named {
-        std::uint64_t cell;
-        Key key;
-        std::uint32_t meeting;
-    };
-
+    // The meetings of one name are one vertex. What is sorted is short each time, so that a stop is
+    // seen soon.
     std::vector<std::pair<Key, std::uint32_t>> by_key(builder.meetings_.size());
-    for (std::size_t i = 0; i < by_key.size(); ++i) {
-        by_key[i] = {builder.meetings_[i].key, static_cast<std::uint32_t>(i)};
+    std::array<std::uint32_t, kHeaps + 1> heap_end = {};
+    for (const Meeting& meeting : builder.meetings_) {
+        ++heap_end[heap_of(meeting.key) + 1];
     }
-    std::sort(by_key.begin(), by_key.end());
+    std::partial_sum(heap_end.begin(), heap_end.end(), heap_end.begin());
+    for (std::uint32_t i = 0; i < by_key.size(); ++i) {
+        const Key key = builder.meetings_[i].key;
+        by_key[heap_end[heap_of(key)]++] = {key, i};
+    }
     std::vector<Named> named;
     std::vector<std::uint32_t> group_of(by_key.size());
-    std::vector<Point> points;
-    for (std::size_t i = 0; i < by_key.size(); ++i) {
-        if (i == 0 || by_key[i].first != by_key[i - 1].first) {
-            const Point point = builder.point_of(by_key[i].first);
-            const Cell cell = {
-                cell_of(point.x(), frame.cell, frame.cells.x),
-                cell_of(point.y(), frame.cell, frame.cells.y),
-                cell_of(point.z(), frame.cell, frame.cells.z)};
-            named.push_back({frame.cells.index(cell), by_key[i].first, by_key[i].second});
-            points.push_back(point);
+    for (std::size_t heap = 0; heap < kHeaps; ++heap) {
+        if (stop.stop_requested()) {
+            return tl::unexpected(cancelled());
         }
-        group_of[by_key[i].second] = static_cast<std::uint32_t>(named.size() - 1);
+        const std::size_t begin = heap == 0 ? 0 : heap_end[heap - 1];
+        const std::size_t end = heap_end[heap];
+        std::sort(
+            by_key.begin() + static_cast<std::ptrdiff_t>(begin),
+            by_key.begin() + static_cast<std::ptrdiff_t>(end)
+        );
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i == begin || by_key[i].first != by_key[i - 1].first) {
+                named.push_back({by_key[i].first, by_key[i].second, {}, 0});
+            }
+            group_of[by_key[i].second] = static_cast<std::uint32_t>(named.size() - 1);
+        }
     }
     if (named.size() > vertices_max) {
         return tl::unexpected(Error{
@@ -398,28 +419,50 @@ Result<Arrangement> Arrangement::make(
                 " points, more than " + std::to_string(vertices_max) +
                 "; a wider spacing or a smaller size helps"});
     }
-    std::vector<std::uint32_t> order(named.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        order[i] = static_cast<std::uint32_t>(i);
-    }
-    std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
-        return std::pair(named[x].cell, named[x].key) < std::pair(named[y].cell, named[y].key);
-    });
-
     Arrangement made;
     made.topes_ = &topes;
     made.frame_ = frame;
     made.planes_.assign(planes.begin(), planes.end());
-    std::vector<Site> number(order.size());
     made.first_in_cell_.assign(frame.cells.cell_count() + 1, 0);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        number[order[i]] = static_cast<Site>(i);
-        made.positions_.push_back(points[order[i]]);
-        made.families_.push_back(builder.meetings_[named[order[i]].meeting].families);
-        ++made.first_in_cell_[named[order[i]].cell + 1];
+    for (std::size_t i = 0; i < named.size(); ++i) {
+        if (i % kStopInterval == 0 && stop.stop_requested()) {
+            return tl::unexpected(cancelled());
+        }
+        Named& vertex = named[i];
+        vertex.place = builder.point_of(vertex.key);
+        vertex.cell = frame.cells.index(
+            {cell_of(vertex.place.x(), frame.cell, frame.cells.x),
+             cell_of(vertex.place.y(), frame.cell, frame.cells.y),
+             cell_of(vertex.place.z(), frame.cell, frame.cells.z)}
+        );
+        ++made.first_in_cell_[vertex.cell + 1];
     }
-    for (std::size_t cell = 1; cell < made.first_in_cell_.size(); ++cell) {
-        made.first_in_cell_[cell] += made.first_in_cell_[cell - 1];
+    std::partial_sum(
+        made.first_in_cell_.begin(), made.first_in_cell_.end(), made.first_in_cell_.begin()
+    );
+
+    // Vertices by cell, then by name.
+    std::vector<std::uint32_t> order(named.size());
+    std::vector<Site> next_in_cell(made.first_in_cell_.begin(), made.first_in_cell_.end() - 1);
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+        order[next_in_cell[named[i].cell]++] = i;
+    }
+    for (std::size_t cell = 0; cell + 1 < made.first_in_cell_.size(); ++cell) {
+        if (cell % kStopInterval == 0 && stop.stop_requested()) {
+            return tl::unexpected(cancelled());
+        }
+        std::sort(
+            order.begin() + made.first_in_cell_[cell],
+            order.begin() + made.first_in_cell_[cell + 1],
+            [&](std::uint32_t x, std::uint32_t y) { return named[x].key < named[y].key; }
+        );
+    }
+    std::vector<Site> number(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Named& vertex = named[order[i]];
+        number[order[i]] = static_cast<Site>(i);
+        made.positions_.push_back(vertex.place);
+        made.families_.push_back(builder.meetings_[vertex.meeting].families);
     }
 
     const auto visit_ends = [&](auto visit) {
@@ -437,6 +480,9 @@ Result<Arrangement> Arrangement::make(
             visit(before, walk.heading, kNoSite);
         }
     };
+    if (stop.stop_requested()) {
+        return tl::unexpected(cancelled());
+    }
     made.first_edge_.assign(order.size() + 2, 0);
     visit_ends([&](Site at, Heading, Site) { ++made.first_edge_[at + 2]; });
     for (std::size_t i = 2; i < made.first_edge_.size(); ++i) {
@@ -448,6 +494,9 @@ Result<Arrangement> Arrangement::make(
     });
     made.first_edge_.pop_back();
     for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i % kStopInterval == 0 && stop.stop_requested()) {
+            return tl::unexpected(cancelled());
+        }
         std::sort(
             made.edges_.begin() + made.first_edge_[i],
             made.edges_.begin() + made.first_edge_[i + 1],

@@ -3,6 +3,7 @@
 #include "solver/continuous/faults.h"
 #include "solver/continuous/planes/spacing.h"
 #include "solver/continuous/problem.h"
+#include "solver/continuous/problem_cache.h"
 #include "solver/continuous/reading/reading.h"
 #include "solver/continuous/surface/surface.h"
 #include "solver/continuous/synthesis.h"
@@ -152,6 +153,20 @@ TEST(Spacings, LetFourPlanesMeet) {
     }
     const Problem problem = make_problem(reading, of_size(reading->example(), {8, 4, 8})).value();
     EXPECT_TRUE(problem.homeless.empty());
+}
+
+TEST(ProblemCache, KeepsNothingThatWasStopped) {
+    const Outline square = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    const Reading reading = read(plain({pyramid(2, square, 0, {1, 1, -1})}, ObjectId{1}));
+    const Parameters parameters = of_size(reading->example(), {8, 4, 8});
+    ProblemCache cache;
+    std::stop_source stop;
+    stop.request_stop();
+    const auto stopped = cache.find_or_make(reading, parameters, stop.get_token());
+    ASSERT_FALSE(stopped.has_value());
+    EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+    const auto made = cache.find_or_make(reading, parameters).value();
+    EXPECT_EQ(cache.find_or_make(reading, parameters).value(), made);
 }
 
 TEST(Spacings, TellWhatCannotMeet) {

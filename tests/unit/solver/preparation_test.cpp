@@ -61,6 +61,18 @@ TEST(Preparation, AStoppedRunLeavesNothingBehind) {
     EXPECT_EQ(labels_of(*preparation, 3), labels_alone(parameters, 3));
 }
 
+TEST(Preparation, IsNotKeptWhenItWasStopped) {
+    const Parameters parameters = sized(*castle(), {24, 9, 18});
+    std::stop_source stop;
+    stop.request_stop();
+    PreparationCache cache;
+    const auto stopped = cache.find_or_make(castle(), parameters, stop.get_token());
+    ASSERT_FALSE(stopped.has_value());
+    EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+    const auto made = cache.find_or_make(castle(), parameters).value();
+    EXPECT_EQ(labels_of(*made, 3), labels_alone(parameters, 3));
+}
+
 TEST(Preparation, ServesSeveralThreadsAtOnce) {
     const Parameters parameters = sized(*castle(), {24, 9, 18});
     const auto preparation = Preparation::make(castle(), parameters).value();
