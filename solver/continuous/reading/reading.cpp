@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -249,7 +250,11 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::read_for(
     if (!volumes) {
         return tl::unexpected(std::move(volumes.error()));
     }
-    Example example = with_bounding_volumes(plain->example(), *volumes);
+    std::optional<Example> changed;
+    if (!volumes->empty()) {
+        changed = with_bounding_volumes(plain->example(), *volumes);
+    }
+    const Example& example = changed ? *changed : plain->example();
     ReadingOptions options = {
         parameters.variants, {}, {}, std::move(*volumes), parameters.nudge, {}};
     if (options.variants != Variants()) {
@@ -278,7 +283,7 @@ Result<std::shared_ptr<const ExampleReading>> ExampleReading::read_for(
             return found;
         }
     }
-    auto made = make_unshared(std::move(example), options);
+    auto made = make_unshared(example, options);
     if (!made) {
         return tl::unexpected(std::move(made.error()));
     }

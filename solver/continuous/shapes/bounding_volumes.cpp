@@ -88,9 +88,6 @@ Result<std::vector<BoundingVolume>> bounding_volumes_of(
 }
 
 Example with_bounding_volumes(const Example& example, std::span<const BoundingVolume> volumes) {
-    if (volumes.empty()) {
-        return example;
-    }
     Example changed = whole_with(example, volumes);
     cut_boxes(changed);
     return changed;

@@ -25,7 +25,7 @@ struct BoundingVolume {
     const Example& example, const Parameters& parameters
 );
 
-// The example with those in the place of its objects' own shapes, its boxes cut anew: objects keep
+// A copy of the example with those in the place of its objects' own shapes, its boxes cut anew: objects keep
 // their numbers, but for what is cut off boxes. Requires: bounding_volumes_of() gave them.
 [[nodiscard]] Example with_bounding_volumes(
     const Example& example, std::span<const BoundingVolume> volumes
