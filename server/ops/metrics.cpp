@@ -3,6 +3,8 @@
 
 #include "server/ops/metrics.h"
 
+#include "proto/problem.h"
+
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
@@ -136,6 +138,17 @@ Metrics::Metrics(const std::string& version) : families_(std::make_unique<Famili
     // From nothing, or a rate would miss the first of each.
     for (const char* outcome : {"delivered", "retried", "given-up"}) {
         families_->webhook_tries.Add({{"outcome", outcome}});
+    }
+    for (const proto::ProblemKind& kind : proto::problem_kinds()) {
+        if (is_rejection(kind.status)) {
+            families_->rejected.Add({{"reason", kind.name}});
+        }
+    }
+    for (const char* reason : {"connections", "connections-of-address"}) {
+        families_->rejected.Add({{"reason", reason}});
+    }
+    for (const char* reason : {"slow-reader", "frame-not-kept"}) {
+        families_->events_dropped.Add({{"reason", reason}});
     }
 }
 

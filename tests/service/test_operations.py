@@ -4,6 +4,7 @@ import contextlib
 import hashlib
 import json
 import os
+import pathlib
 import re
 import signal
 import socket
@@ -18,6 +19,8 @@ from checks import ENDLESS, STRIPES, assert_problem, job_request
 from conftest import BIN_DIR
 from raw_http import Wire
 from websocket_client import CLOSE, TEXT, HandshakeRefused, WebSocketClient
+
+_ROOT = pathlib.Path(__file__).parents[2]
 
 # Keeps one worker busy for as long as it takes to look around.
 SOME_SECONDS = {"size": [100, 10, 100],
@@ -366,6 +369,19 @@ def test_metrics_tell_what_is_going_on(make_server):
     wait_until(lambda: metrics_text.value(
         metrics_of(server), "modelsynth_jobs_total", result="cancelled") == 2)
     wait_until(lambda: metrics_text.value(metrics_of(server), "modelsynth_ws_connections") == 0)
+
+
+def test_what_is_counted_by_reason_begins_at_nothing(make_server):
+    """Or a rate would miss the first of each."""
+    samples = metrics_of(make_server())
+    alerts = (_ROOT / "deploy/prometheus/alerts.yml").read_text()
+    watched = {reason for group in re.findall(r'modelsynth_rejected_total\{reason=~?"([^"]*)"', alerts)
+               for reason in group.split("|")}
+    assert watched
+    for reason in (*watched, "unauthorized", "missing-scope", "too-fast", "body-too-large",
+                   "connections-of-address"):
+        assert metrics_text.value(samples, "modelsynth_rejected_total", reason=reason) == 0
+    assert metrics_text.value(samples, "modelsynth_events_dropped_total", reason="slow-reader") == 0
 
 
 def test_metrics_are_for_administrators(make_server, tmp_path):
