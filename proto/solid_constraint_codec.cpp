@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -16,6 +17,9 @@ namespace modelsynth::proto {
 namespace {
 
 constexpr std::size_t kBoundingVolume = 6;  // of kRuleNames
+static_assert(std::is_same_v<
+              std::variant_alternative_t<kBoundingVolume, continuous::Rule>,
+              continuous::BoundingVolumeRule>);
 
 using continuous::BoundingVolumeRule;
 using continuous::ConnectedRule;

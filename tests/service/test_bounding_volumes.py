@@ -9,7 +9,7 @@ import pytest
 from checks import assert_faults, assert_problem
 from glb_file import GlbFile
 from test_shapes import box
-from test_solid_options import asking, make, post, triangles_of
+from test_solid_options import asking, make, post, remake, triangles_of
 
 POSTS = {
     "kind": "continuous", "name": "posts", "spacing": 1, "density": 0.8, "ground": "floor",
@@ -24,6 +24,7 @@ SPIRE = {
               [3, 8, 2], [2, 8, 6], [6, 8, 7], [7, 8, 3]],
 }
 
+
 def volume(**fields):
     return {"kind": "bounding_volume", "object": "post", **fields}
 
@@ -36,6 +37,12 @@ def with_shape(**shape):
 
 def bytes_of(server, job):
     return server.get(f"/v1/jobs/{job['id']}/model.glb").body
+
+
+def has_slopes(server, job):
+    """Whether some post is no box."""
+    return any(all(len({corner[axis] for corner in one}) > 1 for axis in range(3))
+               for one in triangles_of(server, job)["post"])
 
 
 @pytest.mark.parametrize("shape", [
@@ -59,11 +66,7 @@ def test_a_shape_of_the_example_makes_room_for_it_and_stays_where_nothing_is_ask
     example = with_shape(even=["x", "y", "z"])
     own = make(server, example)
     asked = make(server, example, constraints=[volume(**SPIRE)])
-
-    def has_slopes(job):
-        return any(all(len({corner[axis] for corner in one}) > 1 for axis in range(3))
-                   for one in triangles_of(server, job)["post"])
-    assert has_slopes(asked) and not has_slopes(own)
+    assert has_slopes(server, asked) and not has_slopes(server, own)
     assert bytes_of(server, make(server, example, constraints=[])) == bytes_of(server, own)
 
 
@@ -80,16 +83,12 @@ def test_an_example_may_ask_for_it_itself(server):
 
 def test_a_part_is_made_anew_with_the_same_volumes_only(server):
     first = make(server, POSTS, constraints=[volume(**SPIRE, even=["x", "z"])])
-
-    def again(**parameters):
-        request = {"from": {"job": first["id"], "box": {"min": [4, 0, 4], "max": [10, 6, 10]}},
-                   "seed": 5, "parameters": parameters}
-        return server.request("POST", "/v1/jobs", request, headers={"Prefer": "wait=60"})
-    same = again()
+    same = remake(server, first)
     assert same.status == 200 and same.json()["state"] == "succeeded", same.body
-    assert max(y for one in triangles_of(server, same.json())["post"] for _, y, _ in one) > 0
+    assert same.json()["result"]["sha256"] != first["result"]["sha256"]
+    assert has_slopes(server, first) and has_slopes(server, same.json())
     for constraints in ([], [volume(**SPIRE)]):
-        answer = again(constraints=constraints)
+        answer = remake(server, first, constraints=constraints)
         assert answer.status == 422, answer.body
         assert "bounding volumes" in answer.json()["errors"][0]["detail"]
 

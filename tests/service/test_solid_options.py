@@ -50,6 +50,13 @@ def make(server, example, **parameters):
     return job
 
 
+def remake(server, job, **parameters):
+    """A part of the job's model, with other parameters if any are given."""
+    request = {"from": {"job": job["id"], "box": {"min": [4, 0, 4], "max": [10, 6, 10]}},
+               "seed": 5, "parameters": parameters}
+    return server.request("POST", "/v1/jobs", request, headers={"Prefer": "wait=60"})
+
+
 def triangles_of(server, job):
     return triangles_by_material(model_of(server, job))
 
@@ -180,17 +187,12 @@ def test_too_many_variants_are_refused(server):
 
 def test_a_job_from_one_with_other_options_is_refused(server):
     first = make(server, GABLE, boundary={"west": "free"}, variants={"turns": 4})
-
-    def again(**parameters):
-        request = {"from": {"job": first["id"], "box": {"min": [4, 0, 4], "max": [10, 6, 10]}},
-                   "seed": 5, "parameters": parameters}
-        return server.request("POST", "/v1/jobs", request, headers={"Prefer": "wait=60"})
-    same = again()
+    same = remake(server, first)
     assert same.status == 200 and same.json()["state"] == "succeeded", same.body
     assert same.json()["request"]["parameters"]["variants"]["turns"] == 4
     for parameters in ({"boundary": {}}, {"variants": {}}, {"nudge": 3},
                        {"size": [24, 6, 18]}):
-        answer = again(**parameters)
+        answer = remake(server, first, **parameters)
         assert answer.status in (400, 422), (parameters, answer.body)
         assert answer.json()["errors"], answer.body
 

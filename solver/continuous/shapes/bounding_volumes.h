@@ -25,8 +25,9 @@ struct BoundingVolume {
     const Example& example, const Parameters& parameters
 );
 
-// A copy of the example with those in the place of its objects' own shapes, its boxes cut anew: objects keep
-// their numbers, but for what is cut off boxes. Requires: bounding_volumes_of() gave them.
+// A copy of the example with those in the place of its objects' own shapes, its boxes cut anew:
+// objects keep their numbers, but for what is cut off boxes. Requires: bounding_volumes_of() gave
+// them.
 [[nodiscard]] Example with_bounding_volumes(
     const Example& example, std::span<const BoundingVolume> volumes
 );
