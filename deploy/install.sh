@@ -10,8 +10,8 @@ packages=(
   libpng-dev libcadical-dev libeigen3-dev libmeshoptimizer-dev zlib1g-dev prometheus-cpp-dev
 )
 if [ "${1:-build}" = test ]; then
-  packages+=(libgtest-dev curl openssl python3 python3-pytest python3-jsonschema
-             clang-format faketime slowhttptest)
+  packages+=(libgtest-dev curl openssl python3 python3-pytest python3-pytest-xdist
+             python3-jsonschema clang-format faketime slowhttptest)
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 

@@ -64,8 +64,9 @@ service() {  # PRESET PYTEST-ARGUMENTS...
   local preset=$1
   shift
   step "$preset service tests"
+  # A file's tests stay in one process: they share a server, and what they measure of it.
   MODELSYNTH_BIN_DIR=$root/build/$preset/bin /usr/bin/python3 -m pytest -q -p no:cacheprovider \
-    --junitxml="$results/$preset.service.xml" "$@"
+    -n 3 --dist loadfile --junitxml="$results/$preset.service.xml" "$@"
   [ -s "$results/$preset.service.xml" ] || broken "$preset service tests"
 }
 

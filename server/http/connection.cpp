@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -188,7 +189,12 @@ class Connection {
     // Waits until the job ended, or has the event that is waited for, the time is up or the client
     // is gone; true: it is gone.
     net::awaitable<bool> wait_for_job(const WaitForJob wait) {
-        EventCursor cursor(events(), wait.job_id, wait.since.value_or(0));
+        std::optional<EventCursor> cursor;
+        if (wait.since) {
+            cursor.emplace(events(), wait.job_id, *wait.since);
+        } else {
+            cursor.emplace(events(), wait.job_id);
+        }
         const auto until = std::chrono::steady_clock::now() + wait.most;
         stream_.expires_never();
         for (;;) {
@@ -205,7 +211,7 @@ class Connection {
                 co_return false;
             }
             constexpr auto kSlice = std::chrono::milliseconds(500);
-            const auto batch = co_await cursor.next(std::min(left, kSlice));
+            const auto batch = co_await cursor->next(std::min(left, kSlice));
             const bool has_news = wait.since && !batch.page.events.empty();
             if (batch.gone || batch.finished || has_news) {
                 co_return false;

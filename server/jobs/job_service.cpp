@@ -90,11 +90,8 @@ void JobService::work(const std::stop_token& stop) {
         }
         const auto claim = capacity_.claim(jobs_, proto::now_millis());
         if (claim && *claim) {
-            // A job that is alone takes the workers that have nothing to do to help, as far as
-            // there are processors for them.
-            const std::size_t threads = std::min<std::size_t>(
-                config_.workers / ++jobs_in_hand_, std::max(1U, std::thread::hardware_concurrency())
-            );
+            ++jobs_in_hand_;
+            const std::size_t threads = threads_for_a_job();
             run_claim(context, **claim, static_cast<std::uint32_t>(threads));
             capacity_.give_back(**claim);
             const std::lock_guard lock(mutex_);
@@ -103,8 +100,18 @@ void JobService::work(const std::stop_token& stop) {
             continue;
         }
         std::unique_lock lock(mutex_);
+        ++idle_workers_;
         queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen || draining_; });
+        --idle_workers_;
     }
+}
+
+std::size_t JobService::threads_for_a_job() {
+    const std::lock_guard lock(mutex_);
+    return std::min<std::size_t>(
+        config_.workers / (config_.workers - idle_workers_),
+        std::max(1U, std::thread::hardware_concurrency())
+    );
 }
 
 void JobService::keep_house(const std::stop_token& stop) {

@@ -124,6 +124,9 @@ class JobService {
 
   private:
     void work(const std::stop_token& stop);
+    // For a job that is claimed now: workers that have nothing to do help, as far as there are
+    // processors for them.
+    [[nodiscard]] std::size_t threads_for_a_job();
     // Removes what is no longer kept.
     void keep_house(const std::stop_token& stop);
     // The request of a job to start from; what the new one needs of it goes to `inputs`.
@@ -153,6 +156,7 @@ class JobService {
     std::mutex mutex_;
     std::condition_variable_any queued_;
     std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news
+    std::size_t idle_workers_ = 0;   // guarded by mutex_
     std::atomic<std::size_t> jobs_in_hand_ = 0;
     std::condition_variable let_go_;  // of a job in hand
     JobObserver& observer_;

@@ -2,6 +2,7 @@
 
 #include "server/store/types.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,10 +25,14 @@ class EventLog {
         const std::string& job_id, std::uint64_t after, std::size_t limit
     ) = 0;
 
-    // Calls `changed` after every commit that touched the job's log, and when the job is erased;
-    // never two at once. A hint to read, nothing more. It must not call into the store.
+    // Which commits a subscriber is told of: all that touched the job's log, or those alone after
+    // which it stays as it is.
+    enum class News : std::uint8_t { kAny, kEnd };
+
+    // Calls `changed` after such commits, and when the job is erased; never two at once. A hint to
+    // read, nothing more. It must not call into the store.
     [[nodiscard]] virtual std::unique_ptr<Subscription> subscribe(
-        const std::string& job_id, std::function<void()> changed
+        const std::string& job_id, News news, std::function<void()> changed
     ) = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <boost/asio/post.hpp>
 
+#include <limits>
 #include <utility>
 
 namespace modelsynth::server {
@@ -20,23 +21,33 @@ EventCursor::EventCursor(
     const Source& source,
     std::string job_id,
     std::uint64_t after,
-    std::shared_ptr<WakeSignal> signal
+    std::shared_ptr<WakeSignal> signal,
+    EventLog::News news
 )
     : log_(*source.log),
       pool_(*source.pool),
       job_id_(std::move(job_id)),
       position_(after),
       news_(std::make_shared<News>(std::move(signal))),
-      subscription_(log_.subscribe(job_id_, [news = news_, executor = source.executor] {
-          net::post(executor, [news] {
-              news->is_there = true;
-              news->signal->raise();
+      subscription_(log_.subscribe(job_id_, news, [told = news_, executor = source.executor] {
+          net::post(executor, [told] {
+              told->is_there = true;
+              told->signal->raise();
           });
       })) {}
 
 EventCursor::EventCursor(const Source& source, std::string job_id, std::uint64_t after)
     : EventCursor(source, std::move(job_id), after, std::make_shared<WakeSignal>(source.executor)) {
 }
+
+EventCursor::EventCursor(const Source& source, std::string job_id)
+    : EventCursor(
+          source,
+          std::move(job_id),
+          std::numeric_limits<std::uint64_t>::max(),
+          std::make_shared<WakeSignal>(source.executor),
+          EventLog::News::kEnd
+      ) {}
 
 EventCursor::~EventCursor() = default;
 

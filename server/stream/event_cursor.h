@@ -29,15 +29,18 @@ class EventCursor {
         net::any_io_executor executor;
     };
 
-    // `signal` is raised when there may be news; several cursors may share it.
+    // `signal` is raised when there may be news of the kind; several cursors may share it.
     EventCursor(
         const Source& source,
         std::string job_id,
         std::uint64_t after,
-        std::shared_ptr<WakeSignal> signal
+        std::shared_ptr<WakeSignal> signal,
+        EventLog::News news = EventLog::News::kAny
     );
     // With a signal of its own.
     EventCursor(const Source& source, std::string job_id, std::uint64_t after);
+    // Hands out no event and waits for the last one alone.
+    EventCursor(const Source& source, std::string job_id);
     ~EventCursor();
 
     EventCursor(const EventCursor&) = delete;

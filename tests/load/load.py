@@ -93,8 +93,9 @@ def idle_sockets(make, options):
             ("one of them", f"{(after - before) * 1000 / options.sockets:.1f} kB", "")]
 
 
-# Some milliseconds of solving, and of those a few.
-SMALL_JOBS = {"castle, 40x10x40": {"example": "castle", "parameters": {"size": [40, 10, 40]}},
+# Some ten milliseconds of solving, some, and of those a few.
+SMALL_JOBS = {"castle, 100x10x100": {"example": "castle", "parameters": {"size": [100, 10, 100]}},
+              "castle, 40x10x40": {"example": "castle", "parameters": {"size": [40, 10, 40]}},
               "a yard of 6 pieces, 30x6x30": {"example": YARD, "parameters": {
                   "size": [30, 6, 30], "weights": "uniform"}}}
 

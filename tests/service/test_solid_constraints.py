@@ -138,7 +138,7 @@ def test_what_may_not_be_in_the_west_is_in_the_east(server, rule, region):
     ({"reflect": "x"}, lambda x, z: (12 - x, z)),
     ({"reflect": "z"}, lambda x, z: (x, 12 - z)),
     ({"rotate": 2}, lambda x, z: (12 - x, 12 - z)),
-], ids=str)
+], ids=["x", "z", "half turn"])
 def test_corners_have_their_image(server, rule, moved):
     walls = corners_of(server, make(server, request_of([{"kind": "symmetry", **rule}])), "wall")
     corners = {(round(x, 3), round(y, 3), round(z, 3)) for x, y, z in walls}

@@ -17,8 +17,10 @@ using proto::UnixMillis;
 // the destructor returns.
 class SqliteStore::Listener final : public EventLog::Subscription {
   public:
-    Listener(SqliteStore& store, const std::string& job_id, std::function<void()> changed)
-        : store_(store), changed_(std::move(changed)) {
+    Listener(
+        SqliteStore& store, const std::string& job_id, News wanted, std::function<void()> changed
+    )
+        : store_(store), wanted_(wanted), changed_(std::move(changed)) {
         const std::lock_guard lock(store_.listeners_mutex_);
         place_ = store_.listeners_.emplace(job_id, this);
     }
@@ -31,10 +33,15 @@ class SqliteStore::Listener final : public EventLog::Subscription {
         store_.listeners_.erase(place_);
     }
 
-    void tell() const { changed_(); }
+    void tell(News news) const {
+        if (wanted_ == News::kAny || news == News::kEnd) {
+            changed_();
+        }
+    }
 
   private:
     SqliteStore& store_;
+    News wanted_;
     std::function<void()> changed_;
     ListenerMap::iterator place_;
 };
@@ -70,17 +77,22 @@ Stored<EventPage> SqliteStore::read(
 }
 
 std::unique_ptr<EventLog::Subscription> SqliteStore::subscribe(
-    const std::string& job_id, std::function<void()> changed
+    const std::string& job_id, News news, std::function<void()> changed
 ) {
-    return std::make_unique<Listener>(*this, job_id, std::move(changed));
+    return std::make_unique<Listener>(*this, job_id, news, std::move(changed));
 }
 
-void SqliteStore::tell_listeners(const std::set<std::string>& jobs) {
+void SqliteStore::touch(const std::string& id, News news) {
+    News& known = touched_.emplace(id, news).first->second;
+    known = std::max(known, news);
+}
+
+void SqliteStore::tell_listeners(const std::map<std::string, News>& jobs) {
     const std::lock_guard lock(listeners_mutex_);
-    for (const std::string& id : jobs) {
+    for (const auto& [id, news] : jobs) {
         const auto [first, last] = listeners_.equal_range(id);
         for (auto listener = first; listener != last; ++listener) {
-            listener->second->tell();
+            listener->second->tell(news);
         }
     }
 }

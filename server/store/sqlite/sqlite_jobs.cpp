@@ -255,7 +255,7 @@ Stored<void> SqliteStore::erase(const std::string& id) {
         if (database.changes() == 0) {
             return no_job(id);
         }
-        touched_.insert(id);
+        touch(id, News::kEnd);
         return {};
     });
 }

@@ -61,7 +61,7 @@ void SqliteStore::forget(UnixMillis then) {
         for (const std::string& id : ids_of(database, old, then, kForgottenMax)) {
             unlink_artifacts(database, id, Unlinked::kAll);
             database.prepare("DELETE FROM job WHERE id = ?").bind(std::string_view(id)).run();
-            touched_.insert(id);
+            touch(id, News::kEnd);
         }
         return {};
     }));

@@ -158,11 +158,12 @@ void SqliteStore::insert_event(
         .bind(event.time)
         .bind(std::string_view(event.fields))
         .run();
-    touched_.insert(id);
+    touch(id, News::kAny);
 }
 
 void SqliteStore::end_cancelled(Database& database, const std::string& id, UnixMillis now) {
     append_event(database, id, {"cancelled", "{}", now});
+    touch(id, News::kEnd);
     database.prepare("UPDATE job SET state = 4, finished = ?, expires = ? WHERE id = ?")
         .bind(now)
         .bind(now + retention_ms_)

@@ -13,7 +13,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -83,7 +82,7 @@ class SqliteStore final : public JobStore,
         const std::string& job_id, std::uint64_t after, std::size_t limit
     ) override;
     [[nodiscard]] std::unique_ptr<Subscription> subscribe(
-        const std::string& job_id, std::function<void()> changed
+        const std::string& job_id, News news, std::function<void()> changed
     ) override;
 
     // ExampleStore
@@ -115,7 +114,9 @@ class SqliteStore final : public JobStore,
 
     void recover(Database& database);
     void after_commit(Database& database);
-    void tell_listeners(const std::set<std::string>& jobs);
+    void tell_listeners(const std::map<std::string, News>& jobs);
+    // That listeners are to be told of the job.
+    void touch(const std::string& id, News news);
 
     // Takes what an ended job has left but its row and events.
     void take_artifacts(Database& database, const std::string& id);
@@ -167,7 +168,7 @@ class SqliteStore final : public JobStore,
     std::unique_ptr<FileArtifacts> artifacts_;
 
     // Only the writer's thread uses these.
-    std::set<std::string> touched_;              // jobs whose listeners are told after the commit
+    std::map<std::string, News> touched_;        // jobs whose listeners are told after the commit
     std::vector<std::string> unlinked_digests_;  // files to look at after the commit
     bool has_new_deliveries_ = false;            // told of after the commit
 

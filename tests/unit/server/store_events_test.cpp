@@ -120,8 +120,9 @@ TEST_P(EventContract, ASubscriberIsToldAfterEachCommitOfItsJob) {
     submit(new_job("a", 1));
     std::atomic<int> told = 0;
     std::atomic<int> told_of_other = 0;
-    const auto subscription = events().subscribe("a", [&told] { ++told; });
-    const auto other = events().subscribe("other", [&told_of_other] { ++told_of_other; });
+    const auto subscription = events().subscribe("a", EventLog::News::kAny, [&told] { ++told; });
+    const auto other =
+        events().subscribe("other", EventLog::News::kAny, [&told_of_other] { ++told_of_other; });
     auto is_told = [&told, expected = 0]() mutable {
         ++expected;
         return eventually([&] { return told >= expected; });
@@ -144,6 +145,28 @@ TEST_P(EventContract, ASubscriberIsToldAfterEachCommitOfItsJob) {
     EXPECT_TRUE(eventually([&] { return told_of_other > 0; }));
 }
 
+TEST_P(EventContract, WhoWaitsForTheEndIsToldOfNothingElse) {
+    using News = EventLog::News;
+    const Claim claimed = submit_and_claim("a");
+    submit(new_job("cancelled", 1));
+    std::atomic<int> told_of_all = 0;
+    std::atomic<int> told = 0;
+    std::atomic<int> told_of_cancelled = 0;
+    const auto all = events().subscribe("a", News::kAny, [&told_of_all] { ++told_of_all; });
+    const auto end = events().subscribe("a", News::kEnd, [&told] { ++told; });
+    const auto other =
+        events().subscribe("cancelled", News::kEnd, [&told_of_cancelled] { ++told_of_cancelled; });
+    value(append(jobs(), claimed.lease, {block_event(0)}));
+    EXPECT_TRUE(eventually([&] { return told_of_all > 0; }));
+    EXPECT_EQ(told, 0);
+    value(jobs().finish(claimed.lease, failed()));
+    EXPECT_TRUE(eventually([&] { return told == 1; }));
+    value(jobs().cancel("cancelled", kNow));
+    EXPECT_TRUE(eventually([&] { return told_of_cancelled == 1; }));
+    value(jobs().erase("a"));
+    EXPECT_TRUE(eventually([&] { return told == 2; }));
+}
+
 TEST_P(EventContract, AllSubscribersOfAJobAreToldNeverTwoCallsOfOneAtOnce) {
     constexpr std::size_t kSubscribers = 20;
     constexpr std::uint32_t kAppends = 20;
@@ -157,7 +180,7 @@ TEST_P(EventContract, AllSubscribersOfAJobAreToldNeverTwoCallsOfOneAtOnce) {
     std::vector<Listener> listeners(kSubscribers);
     std::vector<std::unique_ptr<EventLog::Subscription>> subscriptions;
     for (Listener& listener : listeners) {
-        subscriptions.push_back(events().subscribe("a", [&listener] {
+        subscriptions.push_back(events().subscribe("a", EventLog::News::kAny, [&listener] {
             listener.overlapped = listener.overlapped || listener.is_running.exchange(true);
             ++listener.told;
             listener.is_running = false;
@@ -180,7 +203,7 @@ TEST_P(EventContract, AllSubscribersOfAJobAreToldNeverTwoCallsOfOneAtOnce) {
 TEST_P(EventContract, NobodyIsToldAfterTheSubscriptionHasEnded) {
     const Claim claimed = submit_and_claim("a");
     std::atomic<int> told = 0;
-    auto subscription = events().subscribe("a", [&told] { ++told; });
+    auto subscription = events().subscribe("a", EventLog::News::kAny, [&told] { ++told; });
     value(append(jobs(), claimed.lease, {block_event(0)}));
     subscription.reset();
     const int before = told;
@@ -205,9 +228,13 @@ TEST_P(EventContract, SubscribersComeAndGoWhileTheJobIsWritten) {
         while (!is_done) {
             // Gone with the round: a late call would be seen, at the latest by a sanitizer.
             const auto is_alive = std::make_unique<std::atomic<bool>>(true);
-            auto subscription = events().subscribe("a", [&told_the_dead, alive = is_alive.get()] {
-                told_the_dead = told_the_dead || !*alive;
-            });
+            auto subscription = events().subscribe(
+                "a",
+                EventLog::News::kAny,
+                [&told_the_dead, alive = is_alive.get()] {
+                    told_the_dead = told_the_dead || !*alive;
+                }
+            );
             std::this_thread::yield();
             subscription.reset();
             *is_alive = false;

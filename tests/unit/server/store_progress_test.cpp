@@ -2,8 +2,12 @@
 
 #include "tests/unit/server/store_suite.h"
 
+#include <algorithm>
 #include <future>
+#include <map>
 #include <mutex>
+#include <string>
+#include <vector>
 
 namespace modelsynth::server {
 
@@ -95,32 +99,42 @@ TEST_P(ProgressContract, WhatWasToldIsThereToRead) {
 
 TEST_P(ProgressContract, AnAppendThatFailsLeavesItsNeighboursAlone) {
     const Claim claimed = submit_and_claim("a");
+
+    enum Kind : std::uint8_t { kGood, kOfNoJob, kNotStored };
+
     std::mutex mutex;
-    std::vector<std::optional<StoreErrorCode>> told;
+    std::vector<std::size_t> told_of_job;
+    std::map<std::size_t, std::optional<StoreErrorCode>> told;
     std::promise<void> all_told;
-    constexpr std::size_t kAppends = 40;
+    constexpr std::size_t kAppends = 60;
     for (std::size_t i = 0; i < kAppends; ++i) {
-        const Lease lease = {i % 2 == 0 ? "a" : "none", claimed.lease.token};
-        jobs().append(
-            lease,
-            {block_event(i)},
-            with_checkpoint(static_cast<std::uint32_t>(i), std::to_string(i)),
-            [&](const Stored<std::uint64_t>& first) {
-                const std::lock_guard lock(mutex);
-                told.push_back(error_of(first));
-                if (told.size() == kAppends) {
-                    all_told.set_value();
-                }
+        const Lease lease = {i % 3 == kOfNoJob ? "none" : "a", claimed.lease.token};
+        Progress progress = with_checkpoint(static_cast<std::uint32_t>(i), std::to_string(i));
+        if (i % 3 == kNotStored) {
+            progress.artifacts = {{"model.glb", std::string(64, '0')}};
+        }
+        jobs().append(lease, {block_event(i)}, progress, [&, i](const auto& first) {
+            const std::lock_guard lock(mutex);
+            told[i] = error_of(first);
+            if (i % 3 != kOfNoJob) {
+                told_of_job.push_back(i);
             }
-        );
+            if (told.size() == kAppends) {
+                all_told.set_value();
+            }
+        });
     }
     all_told.get_future().wait();
     const std::lock_guard until_the_last_one_has_left(mutex);
     for (std::size_t i = 0; i < kAppends; ++i) {
-        EXPECT_EQ(told[i].has_value(), i % 2 == 1);
+        const auto expected = i % 3 == kGood      ? std::nullopt
+                              : i % 3 == kOfNoJob ? std::optional(StoreErrorCode::kLeaseLost)
+                                                  : std::optional(StoreErrorCode::kConflict);
+        EXPECT_EQ(told[i], expected) << i;
     }
-    EXPECT_EQ(log("a").size(), 1 + kAppends / 2);
-    EXPECT_EQ(value(jobs().checkpoint("a"))->labels, "38");
+    EXPECT_TRUE(std::is_sorted(told_of_job.begin(), told_of_job.end()));
+    EXPECT_EQ(log("a").size(), 1 + kAppends / 3);
+    EXPECT_EQ(value(jobs().checkpoint("a"))->labels, "57");
     EXPECT_FALSE(value(jobs().checkpoint("none")));
 }
 
