@@ -5,6 +5,7 @@
 #include <tl/expected.hpp>
 
 #include <any>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct Problem {
     std::string instance = {};  // path of the resource it is about
     std::vector<Fault> errors = {};
     std::any explanation = {};  // as of Error, or nothing; told by extension members
+    // When asking again may help, for a status that says so (429, 503); no member of the document.
+    std::uint64_t retry_after_seconds = 2;
 };
 
 template <class T>

@@ -61,12 +61,13 @@ unit() {  # PRESET PROGRAM...
 }
 
 service() {  # PRESET PYTEST-ARGUMENTS...
-  local preset=$1
+  local preset=$1 processes=2
   shift
+  [ "$preset" = release ] && processes=3
   step "$preset service tests"
   # A file's tests stay in one process: they share a server, and what they measure of it.
   MODELSYNTH_BIN_DIR=$root/build/$preset/bin /usr/bin/python3 -m pytest -q -p no:cacheprovider \
-    -n 3 --dist loadfile --junitxml="$results/$preset.service.xml" "$@"
+    -n "$processes" --dist loadfile --junitxml="$results/$preset.service.xml" "$@"
   [ -s "$results/$preset.service.xml" ] || broken "$preset service tests"
 }
 
@@ -114,7 +115,11 @@ if ! $quick; then
   [ $built -eq 0 ] && {
     unit tsan thread_tests store_tests jobs_tests
     service tsan tests/service/test_events.py tests/service/test_determinism.py \
-      tests/service/test_jobs_api.py
+      tests/service/test_jobs_api.py tests/service/test_waits_and_keys.py \
+      tests/service/test_job_lists.py tests/service/test_websocket.py \
+      tests/service/test_multi_stream.py tests/service/test_submit_stream.py \
+      tests/service/test_tls.py \
+      --deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it
   }
 fi
 

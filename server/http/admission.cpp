@@ -167,14 +167,11 @@ std::optional<Response> Admission::admit(Request& request, const Need& need) {
                 ";t=" + std::to_string(verdict.reset_seconds)
         );
         if (!verdict.is_granted) {
-            return problem_response(
-                make_problem(
-                    "too-fast",
-                    "the key has a burst of " + std::to_string(verdict.quota) + " requests"
-                ),
-                request,
-                verdict.reset_seconds
+            auto problem = make_problem(
+                "too-fast", "the key has a burst of " + std::to_string(verdict.quota) + " requests"
             );
+            problem.retry_after_seconds = verdict.reset_seconds;
+            return problem_response(problem, request);
         }
     }
     if (!may(*key, *need.scope)) {

@@ -80,9 +80,7 @@ Response json_response(int status, std::string body) {
     return {status, {{"Content-Type", "application/json"}}, std::move(body)};
 }
 
-Response problem_response(
-    const proto::Problem& problem, const Request& request, std::uint64_t retry_after_seconds
-) {
+Response problem_response(const proto::Problem& problem, const Request& request) {
     proto::Problem placed = problem;
     if (placed.instance.empty()) {
         placed.instance = request.target.substr(0, request.target.find('?'));
@@ -90,7 +88,7 @@ Response problem_response(
     Response response = {
         problem.status, {{"Content-Type", "application/problem+json"}}, proto::to_json(placed)};
     if (problem.status == 503 || problem.status == 429) {
-        response.headers.emplace_back("Retry-After", std::to_string(retry_after_seconds));
+        response.headers.emplace_back("Retry-After", std::to_string(problem.retry_after_seconds));
     }
     if (const std::size_t slash = problem.type.rfind('/'); slash != std::string::npos) {
         response.problem = problem.type.substr(slash + 1);

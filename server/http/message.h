@@ -97,9 +97,7 @@ struct Response {
 [[nodiscard]] Response json_response(int status, std::string body);
 // The problem as application/problem+json, `instance` set to the request's target.
 // Of one that passes it tells when to come back.
-[[nodiscard]] Response problem_response(
-    const proto::Problem& problem, const Request& request, std::uint64_t retry_after_seconds = 2
-);
+[[nodiscard]] Response problem_response(const proto::Problem& problem, const Request& request);
 
 // Splits a request target into path and query and decodes both. False when it is malformed: neither
 // in origin form nor in absolute form with a host, a broken escape, a NUL byte.

@@ -94,6 +94,7 @@ void JobService::work(const std::stop_token& stop) {
             const std::size_t threads = threads_for_a_job();
             run_claim(context, **claim, static_cast<std::uint32_t>(threads));
             capacity_.give_back(**claim);
+            drain_rate_.on_let_go(DrainRate::Clock::now());
             const std::lock_guard lock(mutex_);
             --jobs_in_hand_;
             let_go_.notify_all();
@@ -205,15 +206,22 @@ Parsed<Submitted> JobService::submit(
     job.request_hash = std::move(request_hash);
     job.deadline_seconds = request->deadline_seconds;
     job.artifacts = inputs.links(job.example_id);
-    auto submitted = parsed(
-        jobs_.submit(job, {config_.queue_max, caller.unfinished_max, config_.webhooks_waiting_max})
-    );
-    if (submitted && !submitted->replayed) {
+    auto submitted =
+        jobs_.submit(job, {config_.queue_max, caller.unfinished_max, config_.webhooks_waiting_max});
+    if (!submitted) {
+        const StoreErrorCode code = submitted.error().code;
+        auto problem = problem_of(submitted.error());
+        if (code == StoreErrorCode::kQueueFull || code == StoreErrorCode::kOwnerFull) {
+            problem.retry_after_seconds = drain_rate_.seconds_to_next(DrainRate::Clock::now());
+        }
+        return tl::unexpected(std::move(problem));
+    }
+    if (!submitted->replayed) {
         const std::lock_guard lock(mutex_);
         ++submissions_;
         queued_.notify_one();
     }
-    return submitted;
+    return std::move(*submitted);
 }
 
 Parsed<Job> JobService::find(const std::string& id, const Caller& caller) {
@@ -289,7 +297,9 @@ Parsed<void> JobService::check_ready() {
     const std::size_t most = config_.queue_max - 1;
     queue_was_full_ = *queued > (queue_was_full_ ? most - most / 10 : most);
     if (queue_was_full_) {
-        return tl::unexpected(make_problem("queue-full", "the queue is full"));
+        auto problem = make_problem("queue-full", "the queue is full");
+        problem.retry_after_seconds = drain_rate_.seconds_to_next(DrainRate::Clock::now());
+        return tl::unexpected(std::move(problem));
     }
     return {};
 }

@@ -6,6 +6,7 @@
 #include "proto/problem.h"
 #include "server/jobs/caller.h"
 #include "server/jobs/capacity.h"
+#include "server/jobs/drain_rate.h"
 #include "server/jobs/example_analyses.h"
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_inputs.h"
@@ -149,6 +150,7 @@ class JobService {
     LiveJobs live_;
     RunningJobs running_;
     Capacity capacity_;
+    DrainRate drain_rate_{DrainRate::Clock::now()};
     Preparations preparations_;
     JobModels models_;
     std::atomic<bool> draining_ = false;

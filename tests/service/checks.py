@@ -109,6 +109,12 @@ def job_request(parameters=None, **more):
     return request
 
 
+def post_job(server, body, **headers):
+    return server.request("POST", "/v1/jobs", body,
+                          headers={name.replace("_", "-"): value
+                                   for name, value in headers.items()})
+
+
 def make_job(server, parameters=None, **more):
     """Submits a job and returns it once it has ended."""
     answer = server.request("POST", "/v1/jobs", job_request(parameters, **more),

@@ -9,7 +9,8 @@ import jsonschema
 import pytest
 
 from checks import (HILLS, STRIPES, assert_faults, assert_fits, assert_problem, box_places,
-                    endless_job, files_of, job_request, make_model, state_of, together, wait_until)
+                    endless_job, files_of, job_request, make_model, post_job, state_of, together,
+                    wait_until)
 from constraint_oracle import Oracle, grey_png
 from event_reader import EventReader
 from workload import ENDLESS_JOB, STEADY_JOB, YARD, submit
@@ -28,14 +29,9 @@ YARD_REQUEST = {"solver": "discrete", "example": YARD, "seed": 5,
                 "parameters": {"size": SIZE, **UNIFORM}}
 
 
-def post(server, request, **headers):
-    return server.request("POST", "/v1/jobs", request,
-                          headers={name.replace("_", "-"): value for name, value in headers.items()})
-
-
 def make(server, request):
     """The job, succeeded, and its labels.json."""
-    answer = post(server, request, Prefer="wait=60")
+    answer = post_job(server, request, Prefer="wait=60")
     assert answer.status == 200, answer.body
     job = answer.json()
     assert job["state"] == "succeeded", job["error"]
@@ -235,7 +231,7 @@ def test_the_echo_makes_the_same_model_while_the_earlier_job_is_there(server):
     assert again["request"] == job["request"]
     assert again["result"]["sha256"] == job["result"]["sha256"]
     server.request("DELETE", f"/v1/jobs/{earlier['id']}")
-    assert_faults(post(server, job["request"]), job["request"], ["/from/job"])
+    assert_faults(post_job(server, job["request"]), job["request"], ["/from/job"])
 
 
 def test_the_same_request_gives_the_same_bytes_whatever_the_workers(make_server):
@@ -264,12 +260,12 @@ def test_a_job_without_a_seed_gets_one_and_tells_it(server, hills):
 def test_an_idempotency_key_answers_when_the_earlier_job_is_gone(server):
     earlier, _ = make(server, HILLS_REQUEST)
     request = from_job(earlier, box=BOX)
-    first = post(server, request, Idempotency_Key="from-1")
+    first = post_job(server, request, Idempotency_Key="from-1")
     assert first.status == 202
     server.request("DELETE", f"/v1/jobs/{earlier['id']}")
-    again = post(server, request, Idempotency_Key="from-1")
+    again = post_job(server, request, Idempotency_Key="from-1")
     assert again.status == 202 and again.json()["id"] == first.json()["id"]
-    assert_faults(post(server, request), request, ["/from/job"])
+    assert_faults(post_job(server, request), request, ["/from/job"])
 
 
 # --- the example
@@ -290,7 +286,7 @@ def test_another_example_with_the_same_pieces_may_be_given(server, hills):
     swapped = {**HILLS, "pieces": [HILLS["pieces"][i] for i in (0, 2, 1, 3, 4)]}
     for other in (swapped, STRIPES, "castle"):
         request = {**from_job(hills[0], box=BOX), "example": other}
-        assert_faults(post(server, request), request, ["/example"])
+        assert_faults(post_job(server, request), request, ["/example"])
 
 
 def test_an_uploaded_example_that_was_deleted_stays_with_its_jobs(make_server):
@@ -299,7 +295,7 @@ def test_an_uploaded_example_that_was_deleted_stays_with_its_jobs(make_server):
     earlier, before = make(server, {**HILLS_REQUEST, "example": example})
     assert server.request("DELETE", f"/v1/examples/{example}").status == 204
     with endless_job(server):
-        waiting = post(server, from_job(earlier, box=BOX)).json()
+        waiting = post_job(server, from_job(earlier, box=BOX)).json()
         assert server.request("DELETE", f"/v1/jobs/{earlier['id']}").status == 204
         server.kill()
         server.start()
@@ -313,7 +309,7 @@ def test_an_uploaded_example_that_was_deleted_stays_with_its_jobs(make_server):
     make(server, from_job(job, box=BOX))
     named = {**from_job(job, box=BOX), "example": example}
     make(server, named)
-    assert_faults(post(server, job_request(example=example)), job_request(), ["/example"])
+    assert_faults(post_job(server, job_request(example=example)), job_request(), ["/example"])
 
 
 def test_an_uploaded_example_of_the_new_jobs_own_stays_with_it(make_server):
@@ -351,7 +347,7 @@ def test_the_earlier_job_may_be_deleted_while_the_new_one_waits(make_server):
     earlier, before = make(server, HILLS_REQUEST)
     expected, _ = make(server, from_job(earlier, parameters=UNIFORM, box=BOX))
     with endless_job(server):
-        waiting = post(server, from_job(earlier, parameters=UNIFORM, box=BOX)).json()
+        waiting = post_job(server, from_job(earlier, parameters=UNIFORM, box=BOX)).json()
         assert server.request("DELETE", f"/v1/jobs/{earlier['id']}").status == 204
         server.kill()
         server.start()
@@ -370,7 +366,7 @@ def test_a_job_that_goes_while_another_is_made_from_it_was_there_or_was_not(make
         earlier, before = make(server, {**HILLS_REQUEST, "seed": round_})
         request = from_job(earlier, box=BOX)
         answer, gone = together(2, lambda number, request=request, job=earlier: (
-            post(server, request) if number == 0
+            post_job(server, request) if number == 0
             else server.request("DELETE", f"/v1/jobs/{job['id']}")))
         assert gone.status == 204
         statuses.add(answer.status)
@@ -397,9 +393,9 @@ def test_the_earlier_job_may_expire_while_the_new_one_waits(make_server):
     server = make_server("--retention-hours", "0.001", workers=1)  # 3.6 seconds
     earlier, before = make(server, HILLS_REQUEST)
     with endless_job(server) as endless:
-        waiting = post(server, from_job(earlier, box=BOX)).json()
+        waiting = post_job(server, from_job(earlier, box=BOX)).json()
         wait_until(lambda: server.get(f"/v1/jobs/{earlier['id']}/labels.json").status == 410)
-        assert_problem(post(server, from_job(earlier, box=BOX)), 410, "expired", "/v1/jobs")
+        assert_problem(post_job(server, from_job(earlier, box=BOX)), 410, "expired", "/v1/jobs")
         # What has expired is taken at the start, before any job is.
         server.kill()
         server.start()
@@ -416,7 +412,7 @@ def test_a_job_that_was_killed_goes_on_to_the_same_model(make_server, fraction):
     earlier = server.wait(submit(server, STEADY_JOB)["id"])
     request = from_job(earlier, seed=8, box={"min": [5, 0, 5], "max": [95, 6, 95]})
     expected, _ = make(server, request)
-    job = post(server, request).json()
+    job = post_job(server, request).json()
     assert server.request("DELETE", f"/v1/jobs/{earlier['id']}").status == 204
     with EventReader(server.port, job["id"]) as reader:
         reader.until_event(lambda event: event.get("fraction", -1) > fraction)
@@ -437,20 +433,20 @@ def test_a_job_that_has_no_model_cannot_be_started_from(make_server):
     server = make_server(workers=1)
     running, waiting = submit(server, ENDLESS_JOB), submit(server, ENDLESS_JOB)
     for job in (running, waiting):
-        problem = assert_problem(post(server, from_job(job)), 409, "not-finished", "/v1/jobs")
+        problem = assert_problem(post_job(server, from_job(job)), 409, "not-finished", "/v1/jobs")
         assert [error["pointer"] for error in problem["errors"]] == ["/from/job"]
     for job in (waiting, running):
         server.request("POST", f"/v1/jobs/{job['id']}/cancel")
         server.wait(job["id"])
-        assert_problem(post(server, from_job(job)), 409, "no-model", "/v1/jobs")
+        assert_problem(post_job(server, from_job(job)), 409, "no-model", "/v1/jobs")
     failed = server.wait(submit(server, ENDLESS_JOB, deadline=0.05)["id"])
     assert failed["state"] == "failed"
-    assert_problem(post(server, from_job(failed)), 409, "no-model", "/v1/jobs")
+    assert_problem(post_job(server, from_job(failed)), 409, "no-model", "/v1/jobs")
     server.request("DELETE", f"/v1/jobs/{failed['id']}")
-    assert_faults(post(server, from_job(failed)), from_job(failed), ["/from/job"])
+    assert_faults(post_job(server, from_job(failed)), from_job(failed), ["/from/job"])
     # What is wrong with the request itself goes first.
     wrong = {**from_job(running), "seed": -1}
-    assert_faults(post(server, wrong), wrong, ["/seed", "/from/job"])
+    assert_faults(post_job(server, wrong), wrong, ["/seed", "/from/job"])
 
 
 @pytest.mark.parametrize("change, expected", [
@@ -493,12 +489,12 @@ def test_a_job_that_has_no_model_cannot_be_started_from(make_server):
 def test_faults_are_named_with_their_place(server, hills, change, expected):
     text = json.dumps({"from": {"job": "JOB"}, **change})
     request = json.loads(text.replace("JOB", hills[0]["id"]))
-    assert_faults(post(server, request), request, expected)
+    assert_faults(post_job(server, request), request, expected)
 
 
 def test_a_size_over_the_limit_is_too_large(server, hills):
     request = from_job(hills[0], parameters={"size": [4096, 4, 4096]})
-    problem = assert_faults(post(server, request), request, ["/parameters/size"])
+    problem = assert_faults(post_job(server, request), request, ["/parameters/size"])
     assert problem["type"] == "/problems/too-large"
 
 
@@ -519,10 +515,10 @@ def test_the_schema_of_from_says_what_the_server_takes(server, hills):
             {**job, "mask": grey_png([[0]])}, {**job, "mask": 1},
             {**job, "voxels": {"size": [1, 1, 1], "values": [1]}},
             {**job, "voxels": {"size": [1, 1, 1], "values": [1.5]}}, {**job, "voxels": {}}):
-        answer = post(server, {"from": value, "seed": 1})
+        answer = post_job(server, {"from": value, "seed": 1})
         assert (answer.status == 202) == validator.is_valid(value), (value, answer.body)
         verdicts.add(answer.status)
     assert verdicts == {202, 422}
     job, _ = make_model(server, example=HILLS, parameters={"size": SIZE})
-    echo = post(server, from_job(job, box=BOX)).json()["request"]["from"]
+    echo = post_job(server, from_job(job, box=BOX)).json()["request"]["from"]
     validator.validate(echo)
