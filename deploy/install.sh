@@ -11,7 +11,7 @@ packages=(
 )
 if [ "${1:-build}" = test ]; then
   packages+=(libgtest-dev curl openssl python3 python3-pytest python3-pytest-xdist
-             python3-jsonschema clang-format faketime slowhttptest)
+             python3-jsonschema chromium clang-format faketime slowhttptest)
   command -v npm >/dev/null || packages+=(nodejs npm)
 fi
 

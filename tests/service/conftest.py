@@ -160,9 +160,17 @@ def parse_sse(text):
 LONG_SIZE = (300, 10, 300)
 
 
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item):
+    report = (yield).get_result()
+    if report.when == "call":
+        item.has_failed = report.failed
+
+
 @pytest.fixture
-def make_server():
-    """Makes servers with options of the test's choice; all are ended with the test."""
+def make_server(request):
+    """Makes servers with options of the test's choice; all are ended with the test. What they
+    logged stands in the report of a test that failed."""
     directory = pathlib.Path(tempfile.mkdtemp(prefix="modelsynth-test-"))
     servers = []
 
@@ -174,6 +182,8 @@ def make_server():
     yield make
     for server in servers:
         server.kill()
+        if getattr(request.node, "has_failed", False):
+            print(f"--- log of {server.data}\n{server.log_text()[-8000:]}")
     shutil.rmtree(directory, ignore_errors=True)
 
 

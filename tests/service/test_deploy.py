@@ -68,6 +68,20 @@ def test_metrics_that_are_named_exist():
         assert named <= served, path
 
 
+@pytest.mark.skipif(shutil.which("promtool") is None, reason="promtool is not installed")
+def test_promtool_finds_nothing_wrong(server):
+    server.wait(server.submit()["id"])
+    server.get("/nowhere")
+    metrics = server.get("/metrics").body
+    assert metrics.count(b"\n") > 100
+    for arguments, text in ((["metrics"], metrics),
+                            (["rules", DEPLOY / "prometheus/alerts.yml"], b""),
+                            (["config", "--syntax-only", DEPLOY / "prometheus/scrape.yml"], b"")):
+        done = subprocess.run(["promtool", "check", *arguments], input=text, capture_output=True,
+                              timeout=60)
+        assert (done.returncode, done.stderr) == (0, b""), arguments
+
+
 def test_the_dashboard_is_one():
     dashboard = json.loads((DEPLOY / "grafana/modelsynth.json").read_text())
     places = [tuple(panel["gridPos"].values()) for panel in dashboard["panels"]]

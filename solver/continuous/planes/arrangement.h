@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/continuous/planes/plane_offsets.h"
 #include "solver/continuous/reading/topes.h"
 #include "solver/core/grid.h"
 #include "solver/core/topology.h"
@@ -11,12 +12,6 @@
 #include <vector>
 
 namespace modelsynth::continuous {
-
-// The planes of one family that cut a box, by their offsets, rising.
-using PlaneOffsets = std::vector<double>;
-
-// Of one family.
-inline constexpr std::size_t kPlanesMax = 65535;
 
 // An edge of the arrangement seen from one of its ends.
 struct ArrangementEdge {
