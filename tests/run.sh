@@ -102,7 +102,7 @@ if ! $quick; then
   build asan "${programs[@]}" modelsynthd modelsynth
   built=$?
   join
-  export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=150 MODELSYNTH_SOLID_PERCENT=25
+  export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=60 MODELSYNTH_SOLID_PERCENT=10
   [ $built -eq 0 ] && {
     unit asan "${programs[@]}"
     beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \

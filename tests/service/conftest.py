@@ -15,6 +15,7 @@ import time
 
 import pytest
 
+from event_reader import PATIENCE
 from webhook_receiver import SECRET
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -74,7 +75,7 @@ class Server:
         if self.process is None:
             return None
         self.process.send_signal(signal.SIGTERM)
-        code = self.process.wait(timeout=60)
+        code = self.process.wait(timeout=PATIENCE)
         self._forget()
         return code
 
@@ -83,7 +84,7 @@ class Server:
         if self.process is None:
             return
         self.process.kill()
-        self.process.wait(timeout=60)
+        self.process.wait(timeout=PATIENCE)
         self._forget()
 
     def _forget(self):
@@ -91,7 +92,7 @@ class Server:
         self.log.close()
         self.process = None
 
-    def connection(self, timeout=60):
+    def connection(self, timeout=PATIENCE):
         if self.tls:
             return http.client.HTTPSConnection("127.0.0.1", self.port, timeout=timeout,
                                                context=self.tls)
@@ -100,7 +101,7 @@ class Server:
     def log_text(self):
         return (self.data.parent / (self.data.name + ".log")).read_text()
 
-    def request(self, method, path, body=None, headers=None, timeout=60):
+    def request(self, method, path, body=None, headers=None, timeout=PATIENCE):
         connection = self.connection(timeout)
         headers = dict(headers or {})
         if isinstance(body, (dict, list)):
@@ -125,7 +126,7 @@ class Server:
         assert answer.status == 202, answer.body
         return answer.json()
 
-    def wait(self, job_id, timeout=60):
+    def wait(self, job_id, timeout=PATIENCE):
         """Waits for the job's end and returns the job."""
         until = time.monotonic() + timeout
         while time.monotonic() < until:
@@ -135,7 +136,7 @@ class Server:
             time.sleep(0.02)
         raise AssertionError(f"job {job_id} did not end: {job}")
 
-    def events(self, job_id, after=0, timeout=60):
+    def events(self, job_id, after=0, timeout=PATIENCE):
         """All events of the job up to its last one, as the SSE stream gives them."""
         answer = self.get(f"/v1/jobs/{job_id}/events?after={after}", timeout=timeout)
         assert answer.status in (200, 204), answer.body
