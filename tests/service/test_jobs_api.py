@@ -326,3 +326,23 @@ def test_higher_priority_goes_first_and_equal_ones_in_order_of_arrival(make_serv
         assert [positions[job["id"]] for job in expected] == list(range(len(jobs)))
     started = [server.wait(job["id"])["started"] for job in expected]
     assert started == sorted(started)
+
+
+def test_workers_help_with_a_job_only_when_none_waits(make_server):
+    server = make_server("--large-choices", 10**15)
+
+    def threads():
+        started = re.findall(r"job started .*threads=(\d+)", server.log_text())
+        return [int(count) for count in started]
+
+    for _ in range(5):
+        make_job(server)
+    # A worker that just looks for a job is not seen as idle; it looks four times a second.
+    assert max(threads()) == min(2, os.cpu_count())
+    with endless_job(server), endless_job(server):
+        waiting = [post_job(server, job_request()).json() for _ in range(20)]
+    for job in waiting:
+        server.wait(job["id"])
+    wait_until(lambda: len(threads()) == 27)
+    # The second of the endless ones, and of those that waited all but the last.
+    assert set(threads()[6:-2]) == {1}

@@ -229,7 +229,6 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
                                    : failed  ? proto::failed_fields(outcome.error)
                                              : "{}";
         append_event(database, id, {type, fields, outcome.finished});
-        touch(id, News::kEnd);
         database
             .prepare(
                 "UPDATE job SET state = ?, finished = ?, expires = ?, result = ?, error = ? "

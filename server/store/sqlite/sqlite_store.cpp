@@ -158,12 +158,12 @@ void SqliteStore::insert_event(
         .bind(event.time)
         .bind(std::string_view(event.fields))
         .run();
-    touch(id, News::kAny);
+    const auto state = proto::state_of(event.type);  // the last event has the name of the job's
+    touch(id, state && proto::is_ended(*state) ? News::kEnd : News::kAny);
 }
 
 void SqliteStore::end_cancelled(Database& database, const std::string& id, UnixMillis now) {
     append_event(database, id, {"cancelled", "{}", now});
-    touch(id, News::kEnd);
     database.prepare("UPDATE job SET state = 4, finished = ?, expires = ? WHERE id = ?")
         .bind(now)
         .bind(now + retention_ms_)
