@@ -270,11 +270,13 @@ TEST(ConstraintProperty, HoldInEveryStateOfTheModel) {
             return;
         }
     }
-    for (std::size_t kind = 0; kind < CaseMaker::kKinds; ++kind) {
-        EXPECT_GT(solved[kind], testing::case_count(3000) / CaseMaker::kKinds / 4)
-            << kRuleNames.at(kind);
+    if (testing::are_cases_usual(3000)) {
+        for (std::size_t kind = 0; kind < CaseMaker::kKinds; ++kind) {
+            EXPECT_GT(solved[kind], testing::case_count(3000) / CaseMaker::kKinds / 4)
+                << kRuleNames.at(kind);
+        }
+        EXPECT_LT(gave_up, testing::case_count(3000) / 20);
     }
-    EXPECT_LT(gave_up, testing::case_count(3000) / 20);
 }
 
 // All models of a tiny size, by brute force; one has to be found exactly when there is one, and
@@ -323,8 +325,10 @@ TEST(ConstraintProperty, ATinyModelIsFoundExactlyWhenThereIsOne) {
             << "seed " << seed << " "
             << kRuleNames.at(wanted.parameters.constraints[0].rule.index());
     }
-    EXPECT_GT(cases[true], testing::case_count(3000) / 9);
-    EXPECT_GT(cases[false], testing::case_count(3000) / 30);
+    if (testing::are_cases_usual(3000)) {
+        EXPECT_GT(cases[true], testing::case_count(3000) / 9);
+        EXPECT_GT(cases[false], testing::case_count(3000) / 30);
+    }
 }
 
 }  // namespace

@@ -136,8 +136,10 @@ TEST(Contacts, OfRandomSolidsAreWhereRaysSaySo) {
             }
         }
     }
-    EXPECT_GT(tally.free, 0U);
-    EXPECT_GT(tally.covered, 0U);
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(tally.free, 0U);
+        EXPECT_GT(tally.covered, 0U);
+    }
 }
 
 TEST(Contacts, OfBuiltInModelsAreWhereRaysSaySo) {
@@ -148,9 +150,11 @@ TEST(Contacts, OfBuiltInModelsAreWhereRaysSaySo) {
             expect_true_in_model(examples::find_solids(name), {16, 9, 16}, seed, tally);
         }
     }
-    EXPECT_GT(tally.free, 1000U);
-    EXPECT_GT(tally.covered, 1000U);
-    EXPECT_GT(tally.in_part, solid_case_count(10));
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(tally.free, 1000U);
+        EXPECT_GT(tally.covered, 1000U);
+        EXPECT_GT(tally.in_part, solid_case_count(10));
+    }
 }
 
 }  // namespace

@@ -145,8 +145,10 @@ TEST(DiscreteProperty, EveryModelOfARandomRequestIsConsistent) {
         }
     }
     // The cases must reach both ends, or they test nothing.
-    EXPECT_GT(solved, testing::case_count(600) / 4);
-    EXPECT_GT(refused, testing::case_count(600) / 50);
+    if (testing::are_cases_usual(600)) {
+        EXPECT_GT(solved, testing::case_count(600) / 4);
+        EXPECT_GT(refused, testing::case_count(600) / 50);
+    }
 }
 
 TEST(DiscreteProperty, EqualRequestsGiveEqualModelsAndOtherSeedsOthers) {

@@ -114,9 +114,11 @@ TEST(OriginProperty, WhatIsKeptKeepsItsLabelsInEveryStateAndTheRestFitsToIt) {
             return;
         }
     }
-    EXPECT_GT(remade, cases / 8);
-    EXPECT_GT(grown, cases / 8);
-    EXPECT_LT(failed, cases / 3);
+    if (testing::are_cases_usual(400)) {
+        EXPECT_GT(remade, cases / 8);
+        EXPECT_GT(grown, cases / 8);
+        EXPECT_LT(failed, cases / 3);
+    }
 }
 
 }  // namespace

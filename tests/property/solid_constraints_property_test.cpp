@@ -595,8 +595,10 @@ TEST_P(SolidConstraints, HoldForWhateverIsMade) {
         const Ending ending = expect_constraints_hold(*reading, seed, extent_max);
         ++endings.at(static_cast<std::size_t>(ending));
     }
-    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], solid_case_count(10));
-    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kContradiction)], 0U);
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], solid_case_count(10));
+        EXPECT_GT(endings[static_cast<std::size_t>(Ending::kContradiction)], 0U);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -623,7 +625,9 @@ TEST(SolidConstraintsOfBuiltInExamples, HoldForWhateverIsMade) {
             ++endings.at(static_cast<std::size_t>(ending));
         }
     }
-    EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], 10U);
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(endings[static_cast<std::size_t>(Ending::kModel)], 10U);
+    }
 }
 
 }  // namespace

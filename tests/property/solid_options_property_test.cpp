@@ -145,7 +145,9 @@ TEST_P(OptionsOfBuiltIns, LeaveAllStandingAsInTheExample) {
         const Options options = random_options(reading()->example(), extent, random);
         models += std::size_t{expect_right(reading(), options, checker, seed)};
     }
-    EXPECT_GT(models, solid_case_count(12) / 2);
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(models, solid_case_count(12) / 2);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -171,7 +173,9 @@ TEST_P(OptionsOfRandomSolids, LeaveAllStandingAsInTheExample) {
         const Options options = random_options(example, extent, random);
         models += std::size_t{expect_right(*reading, options, SurfaceChecker(example), seed)};
     }
-    EXPECT_GE(models, solid_case_count(8));
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GE(models, solid_case_count(8));
+    }
 }
 
 TEST_P(OptionsOfRandomSolids, MayStandTurnedAndMirrored) {
@@ -202,7 +206,9 @@ TEST_P(OptionsOfRandomSolids, MayStandTurnedAndMirrored) {
         const SurfaceChecker checker(with_turned_copies((*reading)->example(), turns, mirrored));
         models += std::size_t{expect_right(*reading, options, checker, seed)};
     }
-    EXPECT_GE(models, solid_case_count(4));
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GE(models, solid_case_count(4));
+    }
 }
 
 std::string name_of(const ::testing::TestParamInfo<SolidsKind>& tested) {

@@ -199,8 +199,10 @@ TEST_P(RandomSolids, AreRefusedOrMakeModelsInWhichAllStandsAsInThem) {
             ++models;
         }
     }
-    EXPECT_GT(models, solid_case_count(20));
-    EXPECT_GE(mitres, solid_case_count(40) / 40);  // few: of few models there may be none
+    if (testing::are_solid_cases_usual()) {
+        EXPECT_GT(models, solid_case_count(20));
+        EXPECT_GT(mitres, 0U);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -14,7 +14,7 @@ import pytest
 
 from api_document import ApiDocument
 from conftest import Server
-from event_reader import EventReader
+from event_reader import PATIENCE, EventReader
 from glb_file import GlbFile
 from websocket_client import (
     BINARY, CLOSE, CONTINUATION, GLB, GLB_WHOLE, LABELS, LABELS_WHOLE, PING, PONG, TEXT,
@@ -482,7 +482,8 @@ def test_a_client_that_stops_reading_still_gets_the_end_and_can_build_the_model(
     alone.wait(alone.submit(size, **request)["id"])
     peak_alone = peak_resident_mib(alone)
 
-    server = make_server()
+    # The clients read nothing for as long as the job takes, which may be minutes.
+    server = make_server("--write-seconds", int(PATIENCE))
     job = server.submit(size, **request)
     clients = [connect(server, job, partial="labels", receive_buffer=16384) for _ in range(4)]
     for client in clients:

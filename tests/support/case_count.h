@@ -17,4 +17,10 @@ inline std::uint64_t solid_case_count(std::uint64_t usual) {
     return (usual * case_count(100, "MODELSYNTH_SOLID_PERCENT") + 99) / 100;
 }
 
+// Whether a test looks at no fewer cases than usual. A sanitizer's run looks at few, and what few
+// happen to meet is chance: only a usual run is expected to have met all that its test is about.
+inline bool are_cases_usual(std::uint64_t usual) { return case_count(usual) >= usual; }
+
+inline bool are_solid_cases_usual() { return solid_case_count(100) >= 100; }
+
 }  // namespace modelsynth::testing

@@ -24,6 +24,7 @@
 namespace modelsynth::discrete {
 namespace {
 
+using testing::are_cases_usual;
 using testing::case_count;
 using testing::expect_never_fails;
 using testing::make_example;
@@ -124,9 +125,8 @@ std::map<std::string, std::size_t> check_verdicts(
 }
 
 TEST(Infallibility, PlanarVerdictsHoldAgainstBruteForce) {
-    const std::uint64_t cases = case_count(2000);
     const auto seen = check_verdicts(
-        cases,
+        case_count(2000),
         true,
         {{2, 1, 2}, {2, 1, 3}, {3, 1, 2}, {3, 1, 3}, {4, 1, 2}, {2, 1, 4}},
         {{4, 1, 4}, {6, 1, 6}, {3, 1, 9}, {9, 1, 3}}
@@ -138,18 +138,17 @@ TEST(Infallibility, PlanarVerdictsHoldAgainstBruteForce) {
           "large region",
           "fallible, noticed",
           "fallible, unnoticed"}) {
-        EXPECT_TRUE(seen.contains(each) && seen.at(each) > cases / 400) << each;
+        EXPECT_TRUE(!are_cases_usual(2000) || (seen.contains(each) && seen.at(each) > 5)) << each;
     }
 }
 
 TEST(Infallibility, SpatialVerdictsHoldAgainstBruteForce) {
-    const std::uint64_t cases = case_count(800);
     const auto seen = check_verdicts(
-        cases, false, {{2, 2, 2}, {3, 2, 2}, {2, 3, 2}, {2, 2, 3}}, {{3, 3, 3}, {4, 4, 4}}
+        case_count(800), false, {{2, 2, 2}, {3, 2, 2}, {2, 3, 2}, {2, 2, 3}}, {{3, 3, 3}, {4, 4, 4}}
     );
     for (const char* each :
          {"equation", "small region", "fallible, noticed", "fallible, unnoticed"}) {
-        EXPECT_TRUE(seen.contains(each) && seen.at(each) > cases / 400) << each;
+        EXPECT_TRUE(!are_cases_usual(800) || (seen.contains(each) && seen.at(each) > 2)) << each;
     }
 }
 
