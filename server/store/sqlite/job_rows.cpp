@@ -53,8 +53,8 @@ std::uint64_t turn_of_next(Database& database, const std::string& owner, std::in
     // By these indexes, or it may look at all jobs that the owner ever had.
     Statement row = database.prepare(
         "SELECT MAX((SELECT value FROM meta WHERE key = 'turn'), "
-        "COALESCE((SELECT MAX(turn + cost) FROM job INDEXED BY job_queue WHERE state = 0 AND "
-        "owner = ?1 AND priority = ?2), 0), "
+        "COALESCE((SELECT turn + cost FROM job INDEXED BY job_queue WHERE state = 0 AND "
+        "owner = ?1 AND priority = ?2 ORDER BY turn DESC LIMIT 1), 0), "
         "COALESCE((SELECT MAX(turn + cost) FROM job INDEXED BY job_running WHERE state = 1 AND "
         "owner = ?1 AND priority = ?2), 0))"
     );
@@ -66,17 +66,25 @@ std::uint64_t queue_position(Database& database, const std::string& id, UnixMill
     const std::string level = kLevel;
     const std::string queue = kQueue;
     Statement own = database.prepare(
-        "SELECT " + level + ", turn, ordinal FROM " + queue + " WHERE id = ?2 AND state = 0"
+        "SELECT " + level + ", turn, ordinal, job.owner, job.priority FROM " + queue +
+        " WHERE id = ?2 AND state = 0"
     );
     own.bind(now).bind(std::string_view(id));
     if (!own.step()) {
         return 0;
     }
+    // Those of its own flow by the index alone.
     Statement before = database.prepare(
-        "SELECT COUNT(*) FROM " + queue + " WHERE state = 0 AND (" + level + " > ?2 OR (" + level +
-        " = ?2 AND (turn < ?3 OR (turn = ?3 AND ordinal < ?4))))"
+        "SELECT (SELECT COUNT(*) FROM job INDEXED BY job_queue WHERE state = 0 AND owner = ?5 AND "
+        "priority = ?6 AND turn < ?3) + (SELECT COUNT(*) FROM " +
+        queue +
+        " WHERE state = 0 AND "
+        "(job.owner <> ?5 OR job.priority <> ?6) AND (" +
+        level + " > ?2 OR (" + level + " = ?2 AND (turn < ?3 OR (turn = ?3 AND ordinal < ?4)))))"
     );
+    const std::string owner = own.text(3);
     before.bind(now).bind(own.integer(0)).bind(own.integer(1)).bind(own.integer(2));
+    before.bind(std::string_view(owner)).bind(own.integer(4));
     before.step();
     return before.natural(0);
 }

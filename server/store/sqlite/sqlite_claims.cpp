@@ -52,60 +52,100 @@ void keep_turn(Database& database, const std::string& id, UnixMillis now) {
         .run();
 }
 
+constexpr const char* kClaimColumns =
+    "id, token, deadline, solved_seconds, solver_version, version_base, fruitless_claims, "
+    "next_seq, cost, memory_bytes, created";
+
+enum class Fit : std::uint8_t {
+    kNow,
+    kLater,   // others may go before it
+    kWaiting  // so long that nobody may: it waits until there is room
+};
+
+Fit find_fit(const Statement& row, UnixMillis now, const ClaimLimits& limits) {
+    if (row.natural(8) > limits.cost_max) {
+        return Fit::kLater;
+    }
+    if (row.natural(9) <= limits.memory_bytes_max) {
+        return Fit::kNow;
+    }
+    return now - row.integer(10) >= kPatienceMs ? Fit::kWaiting : Fit::kLater;
+}
+
+Claim claim_of(const Statement& row) {
+    Claim claim;
+    claim.lease = {row.text(0), row.natural(1) + 1};
+    if (!row.is_null(2)) {
+        claim.deadline_seconds = row.real(2);
+    }
+    claim.solved_seconds = row.real(3);
+    claim.solver_version = row.text(4);
+    claim.version_base = row.natural(5);
+    claim.fruitless_claims = static_cast<std::uint32_t>(row.natural(6));
+    claim.head = row.natural(7) - 1;
+    claim.cost = row.natural(8);
+    claim.memory_bytes = row.natural(9);
+    return claim;
+}
+
+// The first job whose turn it is and that fits. As a rule that is the first of a flow, found
+// without a look at the rest of the queue; only where that one does not fit is all of it sorted.
+std::optional<Claim> find_next(Database& database, UnixMillis now, const ClaimLimits& limits) {
+    const std::string select = std::string("SELECT ") + kClaimColumns + " FROM ";
+    const std::string order = std::string(" ORDER BY ") + kLevel + " DESC, turn, ordinal";
+    {
+        Statement first = database.prepare(
+            kFirstOfFlows + select + "first JOIN job USING (ordinal) LEFT JOIN flow USING " +
+            "(owner, priority)" + order + " LIMIT 1"
+        );
+        first.bind(now);
+        if (!first.step()) {
+            return std::nullopt;
+        }
+        const Fit fit = find_fit(first, now, limits);
+        if (fit != Fit::kLater) {
+            return fit == Fit::kNow ? std::optional(claim_of(first)) : std::nullopt;
+        }
+    }
+    Statement next = database.prepare(select + kQueue + " WHERE state = 0" + order);
+    next.bind(now);
+    while (next.step()) {
+        const Fit fit = find_fit(next, now, limits);
+        if (fit != Fit::kLater) {
+            return fit == Fit::kNow ? std::optional(claim_of(next)) : std::nullopt;
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now, const ClaimLimits& limits) {
-    return writer_->call<
-        std::optional<Claim>>([&](Database& database) -> Stored<std::optional<Claim>> {
-        Claim claim;
-        {
-            Statement next = database.prepare(
-                std::string(
-                    "SELECT id, token, deadline, solved_seconds, solver_version, "
-                    "version_base, fruitless_claims, next_seq, cost, memory_bytes, created FROM "
-                ) +
-                kQueue + " WHERE state = 0 ORDER BY " + kLevel + " DESC, turn, ordinal"
-            );
-            next.bind(now);
-            do {
-                if (!next.step()) {
-                    return std::optional<Claim>();
-                }
-                claim.cost = next.natural(8);
-                claim.memory_bytes = next.natural(9);
-                if (claim.cost <= limits.cost_max && claim.memory_bytes > limits.memory_bytes_max &&
-                    now - next.integer(10) >= kPatienceMs) {
-                    return std::optional<Claim>();
-                }
-            } while (claim.cost > limits.cost_max || claim.memory_bytes > limits.memory_bytes_max);
-            claim.lease = {next.text(0), next.natural(1) + 1};
-            if (!next.is_null(2)) {
-                claim.deadline_seconds = next.real(2);
+    return writer_->call<std::optional<Claim>>(
+        [&](Database& database) -> Stored<std::optional<Claim>> {
+            auto claim = find_next(database, now, limits);
+            if (!claim) {
+                return claim;
             }
-            claim.solved_seconds = next.real(3);
-            claim.solver_version = next.text(4);
-            claim.version_base = next.natural(5);
-            claim.fruitless_claims = static_cast<std::uint32_t>(next.natural(6));
-            claim.head = next.natural(7) - 1;
+            database
+                .prepare(
+                    "UPDATE job SET state = 1, token = ?, started = COALESCE(started, ?) "
+                    "WHERE id = ?"
+                )
+                .bind(claim->lease.token)
+                .bind(now)
+                .bind(std::string_view(claim->lease.job_id))
+                .run();
+            keep_turn(database, claim->lease.job_id, now);
+            auto job = find_job(database, claim->lease.job_id);
+            if (!job) {
+                return tl::unexpected(std::move(job.error()));
+            }
+            claim->job = std::move(*job);
+            claim->checkpoint = find_checkpoint(database, claim->lease.job_id);
+            return claim;
         }
-        database
-            .prepare(
-                "UPDATE job SET state = 1, token = ?, started = COALESCE(started, ?) "
-                "WHERE id = ?"
-            )
-            .bind(claim.lease.token)
-            .bind(now)
-            .bind(std::string_view(claim.lease.job_id))
-            .run();
-        keep_turn(database, claim.lease.job_id, now);
-        auto job = find_job(database, claim.lease.job_id);
-        if (!job) {
-            return tl::unexpected(std::move(job.error()));
-        }
-        claim.job = std::move(*job);
-        claim.checkpoint = find_checkpoint(database, claim.lease.job_id);
-        return std::optional<Claim>(std::move(claim));
-    });
+    );
 }
 
 void SqliteStore::append(

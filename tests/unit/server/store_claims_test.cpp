@@ -117,6 +117,14 @@ TEST_P(ClaimContract, AJobThatWaitedThirtySecondsCountsOneLevelHigher) {
     }
 }
 
+TEST_P(ClaimContract, AClockThatIsSetBackLetsNoneOfAnOwnerGoFirst) {
+    submit(job_at("a", 0, kNow + 3'600'000));
+    submit(job_at("b", 0, kNow));
+    between_steps();
+    EXPECT_EQ(claim(kNow + 40'000)->lease.job_id, "a");
+    EXPECT_EQ(claim(kNow + 80'000)->lease.job_id, "b");
+}
+
 TEST_P(ClaimContract, OwnersTakeTurnsWhateverEachHasWaiting) {
     for (int i = 0; i < 50; ++i) {
         NewJob job = new_job("flood" + std::to_string(i));

@@ -238,6 +238,7 @@ void StoreSuite::add_others(std::size_t count) {
     run_together(kThreads, [this, count](std::size_t thread) {
         for (std::size_t i = thread; i < count; i += kThreads) {
             NewJob job = new_job(std::string(kOther) + std::to_string(i));
+            job.owner = "somebody else";
             job.priority = std::numeric_limits<std::int32_t>::min();
             job.created = 1'000'000'000'000'000;
             job.idempotency_key = job.id;
