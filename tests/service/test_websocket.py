@@ -22,6 +22,8 @@ from websocket_client import (
 from workload import (
     DECLINED_JOB, ENDLESS_JOB, SMALL_JOB, STEADY_JOB, SWEEP_JOB, TILES_JOB, YARD, submit)
 
+IS_SANITIZED = "MODELSYNTH_SANITIZED" in os.environ
+
 
 def connect(server, job, partial=None, after=None, **kwargs):
     query = "&".join(f"{name}={value}" for name, value in
@@ -473,15 +475,14 @@ def peak_resident_mib(server):
 def test_a_client_that_stops_reading_still_gets_the_end_and_can_build_the_model(make_server):
     # About 20 MB of frames, more than the kernel's buffers hold for a reader with a small one. A
     # fifth of that is more, too, and a sanitizer takes minutes for a pass.
-    is_sanitized = "MODELSYNTH_SANITIZED" in os.environ
     size = (300, 6, 300)
     request = {"example": YARD, "parameters": {"weights": "uniform", "blocks": {
-        "size": [30, 6, 30], "passes": 1 if is_sanitized else 5}}}
+        "size": [30, 6, 30], "passes": 1 if IS_SANITIZED else 5}}}
 
     # The job itself needs memory, most of all while the model is written; what the clients need
     # is what comes on top. A sanitizer holds back what was freed, so there the size of the process
     # says nothing.
-    if not is_sanitized:
+    if not IS_SANITIZED:
         alone = make_server(name="alone")
         alone.wait(alone.submit(size, **request)["id"])
         peak_alone = peak_resident_mib(alone)
@@ -511,7 +512,7 @@ def test_a_client_that_stops_reading_still_gets_the_end_and_can_build_the_model(
         assert replayed(messages, size) == labels
         assert len(events) < len(log) - 1, "the clients were never slow"
     # 4 clients that read everything from memory would need 80 MB.
-    if not is_sanitized:
+    if not IS_SANITIZED:
         assert peak - peak_alone < 40, f"{peak_alone} MiB without clients, {peak} MiB with four"
 
 
@@ -520,7 +521,8 @@ def lagged(server):
     """What a client gets who stops reading for some seconds while the job goes on: log and
     messages."""
     job = server.submit((300, 6, 300), example=YARD, parameters={
-        "weights": "uniform", "blocks": {"size": [30, 6, 30], "passes": 8}})
+        "weights": "uniform",
+        "blocks": {"size": [30, 6, 30], "passes": 2 if IS_SANITIZED else 8}})
     with connect(server, job, receive_buffer=4096, partial="labels") as client:
         client.message()
         wait_for(lambda: server.get(f"/v1/jobs/{job['id']}").json()["progress"]["fraction"] > 0.5)
