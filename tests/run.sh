@@ -112,6 +112,7 @@ if ! $quick; then
   build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
   join
+  # Of determinism eight workers alone: one and two take minutes and race less.
   [ $built -eq 0 ] && {
     unit tsan thread_tests store_tests jobs_tests
     service tsan tests/service/test_events.py tests/service/test_determinism.py \

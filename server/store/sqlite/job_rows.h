@@ -19,7 +19,7 @@ inline constexpr int kOrdinalColumn = 13;
 
 // The order of claim(): by level, then by turn. A flow is what an owner has of one priority; `turn`
 // was given at the submission, see turn_of_next(), so within a flow it is the order in which jobs
-// came in, and none goes before one of a lower turn.
+// came in. Levels fall in that order, too, unless the clock was set back.
 inline constexpr proto::UnixMillis kPatienceMs = 30'000;
 inline constexpr const char* kQueue =
     "job LEFT JOIN flow ON flow.owner = job.owner AND flow.priority = job.priority";
@@ -27,18 +27,6 @@ inline constexpr const char* kQueue =
 // although there was this job to hand out. ?1 is the time.
 inline constexpr const char* kLevel =
     "(job.priority + MAX(0, ?1 - MAX(job.created, COALESCE(flow.served, job.created))) / 30000)";
-// The ordinals of the first queued job of each flow, by two looks into the index for each.
-inline constexpr const char* kFirstOfFlows =
-    "WITH RECURSIVE first (ordinal) AS ("
-    "SELECT (SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 "
-    "ORDER BY owner, priority, turn LIMIT 1) "
-    "UNION ALL "
-    "SELECT COALESCE("
-    "(SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 AND owner = last.owner AND "
-    "priority > last.priority ORDER BY priority, turn LIMIT 1), "
-    "(SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 AND owner > last.owner "
-    "ORDER BY owner, priority, turn LIMIT 1)) "
-    "FROM first JOIN job AS last USING (ordinal)) ";
 
 [[nodiscard]] tl::unexpected<StoreError> failure(StoreErrorCode code, std::string message);
 [[nodiscard]] tl::unexpected<StoreError> no_job(const std::string& id);

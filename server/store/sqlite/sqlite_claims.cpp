@@ -56,6 +56,19 @@ constexpr const char* kClaimColumns =
     "id, token, deadline, solved_seconds, solver_version, version_base, fruitless_claims, "
     "next_seq, cost, memory_bytes, created";
 
+// The ordinals of the first queued job of each flow, by two looks into the index for each.
+constexpr const char* kFirstOfFlows =
+    "WITH RECURSIVE first (ordinal) AS ("
+    "SELECT (SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 "
+    "ORDER BY owner, priority, turn LIMIT 1) "
+    "UNION ALL "
+    "SELECT COALESCE("
+    "(SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 AND owner = last.owner AND "
+    "priority > last.priority ORDER BY priority, turn LIMIT 1), "
+    "(SELECT ordinal FROM job INDEXED BY job_queue WHERE state = 0 AND owner > last.owner "
+    "ORDER BY owner, priority, turn LIMIT 1)) "
+    "FROM first JOIN job AS last USING (ordinal)) ";
+
 enum class Fit : std::uint8_t {
     kNow,
     kLater,   // others may go before it
@@ -90,6 +103,7 @@ Claim claim_of(const Statement& row) {
 
 // The first job whose turn it is and that fits. As a rule that is the first of a flow, found
 // without a look at the rest of the queue; only where that one does not fit is all of it sorted.
+// After the clock was set back the two may see jobs of one flow in another order.
 std::optional<Claim> find_next(Database& database, UnixMillis now, const ClaimLimits& limits) {
     const std::string select = std::string("SELECT ") + kClaimColumns + " FROM ";
     const std::string order = std::string(" ORDER BY ") + kLevel + " DESC, turn, ordinal";
