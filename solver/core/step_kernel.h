@@ -130,21 +130,45 @@ class StepKernel {
         }
     }
 
-    // Bit r: the neighbour along relation r, or what lies there in memory, has a label without
-    // support.
-    [[gnu::always_inline]] static inline unsigned find_unsupported(
-        const Word* own, const std::array<std::int64_t, kRelations>& steps, const Support& support
+    // Sets in some word of `found` bit `first` + r when the neighbour along relation r, or what
+    // lies there in memory, has a label without support. Sets that fit are compared by vectors.
+    [[gnu::always_inline]] static inline void find_unsupported(
+        const Word* own,
+        const std::array<std::int64_t, kRelations>& steps,
+        const Support& support,
+        std::size_t first,
+        Vector& found
     ) {
-        unsigned unsupported = 0;
-        for (std::size_t relation = 0; relation < kRelations; ++relation) {
-            const Word* set = own + steps[relation] * static_cast<std::int64_t>(kWords);
-            Word removed = 0;
-            for (std::size_t word = 0; word < kWords; ++word) {
-                removed |= set[word] & ~support.words[relation * kWords + word];
+        const auto set = [&](std::size_t relation) __attribute__((always_inline)) {
+            return own + steps[relation] * static_cast<std::int64_t>(kWords);
+        };
+        if constexpr (kWords <= 2) {
+            for (std::size_t i = 0; i < kVectors; ++i) {
+                Vector sets = {};
+                Vector bits = {};
+                for (std::size_t word = 0; word < kVectorWords; ++word) {
+                    const std::size_t at = i * kVectorWords + word;
+                    if (at < kRelations * kWords) {
+                        sets[word] = set(at / kWords)[at % kWords];
+                        bits[word] = Word{1} << (first + at / kWords);
+                    }
+                }
+                const Vector allowed = reinterpret_cast<const Vector*>(support.words)[i];
+                found |= reinterpret_cast<Vector>((sets & ~allowed) != 0) & bits;
             }
-            unsupported |= static_cast<unsigned>(removed != 0) << relation;
+        } else {
+            for (std::size_t relation = 0; relation < kRelations; ++relation) {
+                Word removed = 0;
+                for (std::size_t word = 0; word < kWords; ++word) {
+                    removed |= set(relation)[word] & ~support.words[relation * kWords + word];
+                }
+                found[0] |= static_cast<Word>(removed != 0) << (first + relation);
+            }
         }
-        return unsupported;
+    }
+
+    [[gnu::always_inline]] static inline unsigned merge(const Vector& found) {
+        return static_cast<unsigned>(found[0] | found[1] | found[2] | found[3]);
     }
 
     [[gnu::always_inline]] static inline Propagation loop(
@@ -170,6 +194,7 @@ class StepKernel {
 
         Site sites[kLanes] = {};
         Support supports[kLanes];
+        Vector found = {};  // by these looks, as of find_unsupported()
         const auto take = [&](std::size_t lane) __attribute__((always_inline)) {
             sites[lane] = queue[head];
             head = head + 1 < queue_size ? head + 1 : 0;
@@ -179,8 +204,8 @@ class StepKernel {
         const auto look = [&](std::size_t lane) __attribute__((always_inline)) {
             const Word* const own = sets + sites[lane] * kWords;
             collect(own, unions, supports[lane]);
-            const unsigned found = find_unsupported(own, steps, supports[lane]) & arcs[sites[lane]];
-            return found << (lane * kLaneBits);
+            find_unsupported(own, steps, supports[lane], lane * kLaneBits, found);
+            return static_cast<unsigned>(arcs[sites[lane]]) << (lane * kLaneBits);
         };
 
         Propagation result = Propagation::kConsistent;
@@ -190,7 +215,8 @@ class StepKernel {
                 result = Propagation::kStopped;
                 break;
             }
-            unsigned left = 0;
+            unsigned left = 0;  // of the neighbours that there are
+            found = Vector{};
             if (length >= kLanes) {
 #pragma GCC unroll 4
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -204,6 +230,7 @@ class StepKernel {
                 take(0);
                 left = look(0);
             }
+            left &= merge(found);
             for (; left != 0; left &= left - 1) {
                 const auto bit = static_cast<std::size_t>(std::countr_zero(left));
                 const std::size_t lane = bit / kLaneBits;
