@@ -82,14 +82,6 @@ discrete::CellOrder read_order(const Value& value) {
     return kOrders.at(value.one_of(names).value_or(0)).order;
 }
 
-const char* order_name(const discrete::CellOrder& order) {
-    const auto named = std::find_if(kOrders.begin(), kOrders.end(), [&](const NamedOrder& one) {
-        return one.order == order;
-    });
-    check(named != kOrders.end(), "an order without a name");
-    return named->name;
-}
-
 OrderedJson write_weights(const discrete::Weights& weights) {
     if (const auto* rule = std::get_if<discrete::WeightRule>(&weights)) {
         return *rule == discrete::WeightRule::kUniform ? "uniform" : "example";
@@ -102,6 +94,14 @@ OrderedJson write_weights(const discrete::Weights& weights) {
 }
 
 }  // namespace
+
+const char* order_name(const discrete::CellOrder& order) {
+    const auto named = std::find_if(kOrders.begin(), kOrders.end(), [&](const NamedOrder& one) {
+        return one.order == order;
+    });
+    check(named != kOrders.end(), "an order without a name");
+    return named->name;
+}
 
 std::optional<SideBoundary> read_side(const Value& value, const RequestLimits& limits) {
     if (value.json().is_array()) {

@@ -21,6 +21,9 @@ namespace modelsynth::proto {
 // The inverse, every default written out. Requires: defaults filled in.
 [[nodiscard]] OrderedJson write_parameters(const discrete::Parameters& parameters);
 
+// As under `order`. Requires: one that read_parameters() gives (checked).
+[[nodiscard]] const char* order_name(const discrete::CellOrder& order);
+
 // One side: "free", "example", "periodic", a piece, or a list of pieces.
 [[nodiscard]] std::optional<discrete::SideBoundary> read_side(
     const Value& value, const RequestLimits& limits

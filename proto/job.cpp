@@ -1,5 +1,6 @@
 #include "proto/job.h"
 
+#include "proto/discrete_codec.h"
 #include "proto/json.h"
 #include "proto/limits.h"
 #include "proto/schemas.h"
@@ -174,6 +175,9 @@ std::string to_json(const JobResult& result) {
         {"backtracks", blocks.backtracks},
         {"changed", result.stats.changed},
         {"solve_seconds", result.solve_seconds}};
+    if (result.stats.order) {
+        stats["order"] = order_name({*result.stats.order});
+    }
     if (result.stats.objective) {
         stats["objective"] = *result.stats.objective;
     }

@@ -4,6 +4,7 @@
 #include "solver/core/constraints/constraint_board.h"
 #include "solver/core/label_chooser.h"
 #include "solver/core/least_key.h"
+#include "solver/core/order.h"
 #include "solver/core/random.h"
 #include "solver/core/site_weights.h"
 
@@ -15,15 +16,6 @@
 #include <vector>
 
 namespace modelsynth {
-
-// Which site is labelled next.
-enum class Order : std::uint8_t {
-    kScan,          // in a given order, column by column for a grid
-    kMinEntropy,    // where the choice is least open by the weights, ties at random
-    kFewestLabels,  // where the fewest labels are left, ties at random
-    kRandom,        // anywhere
-    kGrowth,        // beside what is decided from the beginning, or one site, and so on
-};
 
 enum class SearchOutcome : std::uint8_t { kSolved, kFailed, kStopped };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/core/order.h"
 #include "solver/core/search_tally.h"
 
 #include <cstddef>
@@ -15,6 +16,8 @@ struct SynthesisStats {
     // Share of sites whose label differs from the model that the synthesis started from; 1 where
     // there was none, or one as varied as any.
     double changed = 0;
+    // Where it was chosen by trial; none where it was told.
+    std::optional<Order> order = std::nullopt;
     // Where something is to be made small: what it came to, ...
     std::optional<double> objective = std::nullopt;
     // ... and in each of the models that the best was chosen from; nothing for one that failed.

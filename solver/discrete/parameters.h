@@ -3,7 +3,7 @@
 #include "solver/core/block_schedule.h"
 #include "solver/core/grid.h"
 #include "solver/core/masks.h"
-#include "solver/core/search.h"
+#include "solver/core/order.h"
 #include "solver/discrete/example.h"
 #include "solver/discrete/scan_order.h"
 

@@ -198,6 +198,9 @@ class Run {
 
     Synthesis finish(double changed) {
         stats_.changed = changed;
+        if (preparation_.parameters().order.is_chosen_for_it) {
+            stats_.order = preparation_.order();
+        }
         if (metropolis_.is_asked_for()) {
             stats_.objective = metropolis_.value();
         }

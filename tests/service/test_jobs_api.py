@@ -86,6 +86,20 @@ def test_requests_without_a_seed_get_different_ones(server):
     assert all(0 <= seed <= SEED_MAX for seed in seeds)
 
 
+def test_an_order_chosen_by_trial_is_told_and_is_that_which_can_be_asked_for(server):
+    sizes = {"castle": [20, 8, 20], "canyon": [20, 6, 20]}
+    for example, size in sizes.items():
+        request = {"solver": "discrete", "example": example, "seed": 4}
+        chosen = post_job(server, {**request, "parameters": {"size": size, "order": "auto"}},
+                          Prefer="wait=60").json()
+        assert chosen["request"]["parameters"]["order"] == "auto"
+        order = chosen["result"]["stats"]["order"]
+        asked_for = post_job(server, {**request, "parameters": {"size": size, "order": order}},
+                             Prefer="wait=60").json()
+        assert asked_for["result"]["sha256"] == chosen["result"]["sha256"]
+        assert "order" not in asked_for["result"]["stats"]
+
+
 @pytest.mark.parametrize("seed", [0, 1, SEED_MAX])
 def test_a_seed_is_kept_to_the_last_digit(server, seed):
     job = make_job(server, seed=seed)

@@ -131,5 +131,51 @@ TEST(Order, ChosenForAnExampleIsOneThatCanBeAskedFor) {
     }
 }
 
+// The trial asks how often a search succeeds; other seeds have to bear it out.
+TEST(Order, ChosenByTrialSucceedsMoreOften) {
+    constexpr std::uint64_t kExamples = 400;
+    constexpr std::uint64_t kSeeds = 6;
+
+    struct Successes {
+        int examples = 0;
+        int by_scan = 0;
+        int by_entropy = 0;
+    };
+
+    std::array<Successes, 2> of_chosen;  // scan, least entropy
+    for (std::uint64_t number = 1; number <= kExamples; ++number) {
+        const auto example =
+            std::make_shared<const discrete::Example>(testing::make_tiny_example(number, true));
+        discrete::Parameters parameters;
+        parameters.size = GridSize{20, 1, 20};
+        parameters.blocks = std::optional<Blocks>();
+        parameters = discrete::fill_defaults(parameters, *example);
+        parameters.order.is_chosen_for_it = true;
+        const auto chosen = discrete::Preparation::make(example, parameters);
+        if (!chosen) {
+            continue;  // nothing of that size has its pairs
+        }
+        const auto successes = [&](Order order) {
+            parameters.order = {order};
+            const auto preparation = discrete::Preparation::make(example, parameters).value();
+            int count = 0;
+            for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+                testing::RecordingObserver observer;
+                const auto made = discrete::synthesise(*preparation, seed, observer, {});
+                count += made && made->stats.blocks.solved_by[0] == 1 ? 1 : 0;
+            }
+            return count;
+        };
+        Successes& sums = of_chosen.at((*chosen)->order() == Order::kScan ? 0 : 1);
+        ++sums.examples;
+        sums.by_scan += successes(Order::kScan);
+        sums.by_entropy += successes(Order::kMinEntropy);
+    }
+    EXPECT_GT(of_chosen[0].examples, 0);
+    EXPECT_GE(of_chosen[0].by_scan, of_chosen[0].by_entropy);
+    EXPECT_GT(of_chosen[1].examples, 0);
+    EXPECT_GT(of_chosen[1].by_entropy, of_chosen[1].by_scan);
+}
+
 }  // namespace
 }  // namespace modelsynth
