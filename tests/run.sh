@@ -106,8 +106,9 @@ if ! $quick; then
   [ $built -eq 0 ] && {
     unit asan "${programs[@]}"
     beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
-      tests/service/test_multi_stream.py tests/service/test_examples_api.py \
-      tests/service/test_crash.py tests/service/test_tls.py tests/service/test_access.py
+      tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
+      tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
+      tests/service/test_access.py
   }
   build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
@@ -118,8 +119,8 @@ if ! $quick; then
     service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py tests/service/test_waits_and_keys.py \
       tests/service/test_job_lists.py tests/service/test_websocket.py \
-      tests/service/test_multi_stream.py tests/service/test_submit_stream.py \
-      tests/service/test_tls.py \
+      tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
+      tests/service/test_submit_stream.py tests/service/test_tls.py \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[1]" \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[2]" \
       --deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it
