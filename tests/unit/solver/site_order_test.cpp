@@ -158,11 +158,12 @@ TEST(Order, ChosenByTrialSucceedsMoreOften) {
         const auto successes = [&](Order order) {
             parameters.order = {order};
             const auto preparation = discrete::Preparation::make(example, parameters).value();
+            constexpr auto kFirstTry = static_cast<std::size_t>(SolvedBy::kFirstTry);
             int count = 0;
             for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
                 testing::RecordingObserver observer;
                 const auto made = discrete::synthesise(*preparation, seed, observer, {});
-                count += made && made->stats.blocks.solved_by[0] == 1 ? 1 : 0;
+                count += made && made->stats.blocks.solved_by.at(kFirstTry) == 1 ? 1 : 0;
             }
             return count;
         };
