@@ -13,6 +13,7 @@ BlockQueue::BlockQueue(
       periodic_(periodic),
       blocks_(blocks),
       window_(run_ahead),
+      waiting_(model, blocks),
       admitted_(first),
       started_(first),
       next_report_(first) {
@@ -37,6 +38,7 @@ BlockQueue::Step BlockQueue::next_step() {
     }
     if (can_report()) {
         const std::uint32_t block = next_report_++;
+        waiting_.remove(block, blocks_[block]);
         admit();
         changed_.notify_all();
         return {Step::Kind::kReport, block};
@@ -69,13 +71,15 @@ void BlockQueue::admit() {
         later.waits_for = 0;
         later.is_finished = false;
         later.dependents.clear();
-        for (std::uint32_t earlier = next_report_; earlier < admitted_; ++earlier) {
+        const Box& box = blocks_[admitted_];
+        waiting_.for_each_near(box, [&](std::uint32_t earlier) {
             if (!state(earlier).is_finished &&
-                blocks_meet(blocks_[earlier], blocks_[admitted_], model_, periodic_)) {
+                blocks_meet(blocks_[earlier], box, model_, periodic_)) {
                 state(earlier).dependents.push_back(admitted_);
                 ++later.waits_for;
             }
-        }
+        });
+        waiting_.add(admitted_, box);
         if (later.waits_for == 0) {
             ready_.push(admitted_);
         }

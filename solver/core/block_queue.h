@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/core/block_schedule.h"
+#include "solver/core/box_index.h"
 #include "solver/core/grid.h"
 #include "solver/core/grid_topology.h"
 
@@ -19,7 +20,7 @@ namespace modelsynth {
 // are finished, and to one of them, the reporting thread, the finished ones in the order of the
 // schedule. Only the blocks that may run ahead of the reports are looked at, so that it costs the
 // same at any place of a schedule of any length.
-// Cost: memory for run_ahead blocks; O(run_ahead) a block. Thread-safe.
+// Cost: memory for run_ahead blocks; O(blocks near by) a block. Thread-safe.
 class BlockQueue {
   public:
     // What the reporting thread is to do next.
@@ -72,6 +73,7 @@ class BlockQueue {
     std::condition_variable changed_;
     // Of the blocks from next_report_ to admitted_ - 1, each at its number modulo the size.
     std::vector<Waiting> window_;
+    BoxIndex waiting_;  // the same blocks
     std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready_;
     std::uint32_t admitted_;
     std::uint32_t started_;  // how many blocks, those before the first one included

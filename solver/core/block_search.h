@@ -250,6 +250,10 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         RandomKey key,
         const std::stop_token& stop
     ) {
+        // Rows of a large model are far from each other: together they come sooner than in turn.
+        part.for_each_run([&](Site, Site whole, std::size_t) {
+            __builtin_prefetch(&model[whole], 1);
+        });
         prepare(part.inner());
         BlockResult result;
         Propagation propagation = surroundings(part, model, stop);
@@ -331,7 +335,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         if (found.outcome == SatOutcome::kStopped) {
             result.outcome = BlockOutcome::kStopped;
         } else if (found.outcome == SatOutcome::kSolved) {
-            part.for_each_site([&](Site inside, Site whole) { model[whole] = labels[inside]; });
+            for_each_site(part, [&](Site inside, Site whole) { model[whole] = labels[inside]; });
             result.outcome = BlockOutcome::kAccepted;
             result.solved_by = SolvedBy::kSat;
         }
@@ -377,8 +381,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     // What the sites may be by themselves.
     Propagation base(const Part& part, const std::stop_token& stop) {
         numbers_.resize(catalog_->site_count());
-        part.for_each_site([&](Site inside, Site whole) {
-            numbers_[inside] = domains_.number(whole);
+        part.for_each_run([&](Site inside, Site whole, std::size_t count) {
+            domains_.copy_numbers(whole, std::span(numbers_).subspan(inside, count));
         });
         if (bases_ != nullptr) {
             if (const auto known = bases_->find(*topology_, numbers_)) {
@@ -388,7 +392,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         }
         std::vector<Word> sets(catalog_->all_labels().size());
         bool any_empty = false;
-        part.for_each_site([&](Site inside, Site whole) {
+        for_each_site(part, [&](Site inside, Site whole) {
             const std::span<const Word> own = domains_.words(whole);
             if (!any_empty && is_empty(own)) {
                 any_empty = true;
@@ -442,7 +446,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
             return;
         }
         weight_numbers_.resize(catalog_->site_count());
-        part.for_each_site([&](Site inside, Site whole) {
+        for_each_site(part, [&](Site inside, Site whole) {
             weight_numbers_[inside] = weights_.number(whole);
         });
     }
@@ -453,18 +457,18 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
             return true;
         }
         before_.resize(catalog_->site_count());
-        part.for_each_site([&](Site inside, Site whole) { before_[inside] = model[whole]; });
+        for_each_site(part, [&](Site inside, Site whole) { before_[inside] = model[whole]; });
         write(part, model);
         if (judge->accepts(model)) {
             return true;
         }
-        part.for_each_site([&](Site inside, Site whole) { model[whole] = before_[inside]; });
+        for_each_site(part, [&](Site inside, Site whole) { model[whole] = before_[inside]; });
         return false;
     }
 
     void write(const Part& part, std::span<Label> model) const {
-        part.for_each_site([&](Site inside, Site whole) {
-            for_each_label(catalog_->labels(inside), [&](Label label) { model[whole] = label; });
+        for_each_site(part, [&](Site inside, Site whole) {
+            model[whole] = first_label(catalog_->labels(inside));  // the only one
         });
     }
 

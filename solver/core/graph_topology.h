@@ -76,9 +76,12 @@ class GraphPart {
     [[nodiscard]] Site global(Site site) const { return sites_[site]; }
 
     template <class Visit>
-    void for_each_site(Visit visit) const {
-        for (std::size_t inside = 0; inside < sites_.size(); ++inside) {
-            visit(static_cast<Site>(inside), sites_[inside]);
+    void for_each_run(Visit visit) const {
+        for (std::size_t first = 0, end = 0; first < sites_.size(); first = end) {
+            do {
+                ++end;
+            } while (end < sites_.size() && sites_[end] == sites_[end - 1] + 1);
+            visit(static_cast<Site>(first), sites_[first], end - first);
         }
     }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -77,6 +78,18 @@ constexpr void for_each_cell(const Box& box, Visit visit) {
             for (std::int32_t x = box.min.x; x < box.max.x; ++x) {
                 visit(Cell{x, y, z});
             }
+        }
+    }
+}
+
+// Calls visit(Cell first, std::size_t count) for every row of the box: cells that follow each other
+// along x. In the order of flat arrays.
+template <class Visit>
+constexpr void for_each_row(const Box& box, Visit visit) {
+    const auto count = static_cast<std::size_t>(std::max(0, box.max.x - box.min.x));
+    for (std::int32_t y = box.min.y; count > 0 && y < box.max.y; ++y) {
+        for (std::int32_t z = box.min.z; z < box.max.z; ++z) {
+            visit(Cell{box.min.x, y, z}, count);
         }
     }
 }

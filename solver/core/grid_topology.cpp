@@ -89,6 +89,14 @@ GridPart::GridPart(const GridSize& size, Periodic periodic, const Box& box)
     check(lies_inside(size, box), "a block outside the grid");
 }
 
+void GridPart::move_to(const Box& box) {
+    check(lies_inside(size_, box), "a block outside the grid");
+    if (box.size() != box_.size()) {
+        inner_ = GridTopology(box.size(), inner_periodic(size_, periodic_, box));
+    }
+    box_ = box;
+}
+
 Box GridPart::face(std::size_t direction) const { return face_of(box_, direction); }
 
 bool GridPart::has_outside(std::size_t direction, Cell& offset) const {

@@ -90,6 +90,10 @@ class GridPart {
     // Requires: box inside size and not empty (checked).
     GridPart(const GridSize& size, Periodic periodic, const Box& box);
 
+    // As if it were made anew with this box; costs nothing when that has the shape of the last one.
+    // Requires: as above.
+    void move_to(const Box& box);
+
     [[nodiscard]] const GridTopology& inner() const { return inner_; }
 
     [[nodiscard]] Site global(Site site) const {
@@ -100,36 +104,31 @@ class GridPart {
     }
 
     template <class Visit>
-    void for_each_site(Visit visit) const {
+    void for_each_run(Visit visit) const {
         Site inside = 0;
-        for (std::int32_t y = box_.min.y; y < box_.max.y; ++y) {
-            for (std::int32_t z = box_.min.z; z < box_.max.z; ++z) {
-                auto whole = static_cast<Site>(size_.index({box_.min.x, y, z}));
-                for (std::int32_t x = box_.min.x; x < box_.max.x; ++x) {
-                    visit(inside++, whole++);
-                }
-            }
-        }
+        for_each_row(box_, [&](const Cell& first, std::size_t count) {
+            visit(inside, static_cast<Site>(size_.index(first)), count);
+            inside += static_cast<Site>(count);
+        });
     }
 
     template <class Visit>
     void for_each_outward_arc(Visit visit) const {
         for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
-            Cell outside_offset;
-            if (!has_outside(direction, outside_offset)) {
+            Cell beyond;
+            if (!has_outside(direction, beyond)) {
                 continue;
             }
-            for_each_cell(face(direction), [&](const Cell& cell) {
-                const Cell inside = {cell.x - box_.min.x, cell.y - box_.min.y, cell.z - box_.min.z};
-                const Cell outside = {
-                    cell.x + outside_offset.x,
-                    cell.y + outside_offset.y,
-                    cell.z + outside_offset.z};
-                visit(
-                    static_cast<Site>(inner_.size().index(inside)),
-                    static_cast<Site>(size_.index(outside)),
-                    static_cast<RelationId>(direction)
+            for_each_row(face(direction), [&](const Cell& first, std::size_t count) {
+                auto inside = static_cast<Site>(inner_.size().index(
+                    {first.x - box_.min.x, first.y - box_.min.y, first.z - box_.min.z}
+                ));
+                auto outside = static_cast<Site>(
+                    size_.index({first.x + beyond.x, first.y + beyond.y, first.z + beyond.z})
                 );
+                for (const Site end = inside + static_cast<Site>(count); inside != end;) {
+                    visit(inside++, outside++, static_cast<RelationId>(direction));
+                }
             });
         }
     }

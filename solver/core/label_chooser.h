@@ -47,7 +47,7 @@ class PartChooser {
     void enter(const Part& part, std::span<const Label> model) {
         inside_of_.assign(model.size(), kNoSite);
         whole_of_.clear();
-        part.for_each_site([this](Site inside, Site whole) {
+        for_each_site(part, [this](Site inside, Site whole) {
             inside_of_[whole] = inside;
             whole_of_.push_back(whole);
         });

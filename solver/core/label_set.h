@@ -91,6 +91,18 @@ constexpr bool is_empty(const Set& set) {
     return true;
 }
 
+// Of a set that is not empty.
+template <class Set>
+constexpr Label first_label(const Set& set) {
+    std::size_t word = 0;
+    while (set[word] == 0) {
+        ++word;
+    }
+    return static_cast<Label>(
+        word * kWordBits + static_cast<std::size_t>(std::countr_zero(set[word]))
+    );
+}
+
 // A set that owns its words: for boundaries, constraints and whatever is not in a hot loop.
 // A value; distinct objects may be used from distinct threads.
 class LabelSet {

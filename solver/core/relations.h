@@ -2,6 +2,7 @@
 
 #include "solver/core/label_set.h"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,8 +48,10 @@ class Relations {
 
     // The labels that may stand at the far end when `label` stands at the near one.
     [[nodiscard]] std::span<const Word> row(RelationId relation, Label label) const {
-        const std::size_t member = std::size_t{1} << (label % group_bits_);
-        return {union_data(label / group_bits_, member) + relation * words_, words_};
+        const std::size_t member = std::size_t{1} << (label & (group_bits_ - 1));
+        // The group by a shift: a division by what the compiler does not know takes long.
+        const auto shift = static_cast<unsigned>(std::countr_zero(group_bits_));
+        return {union_data(std::size_t{label} >> shift, member) + relation * words_, words_};
     }
 
     // The union of the rows over the labels of a group that `members` has a bit for: label

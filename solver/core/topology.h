@@ -42,22 +42,33 @@ concept SteppedTopology = Topology<T> &&(T::kRelationCount > 0) && requires(cons
 // A part of a topology that is changed while the rest stands still: its sites numbered anew from
 // 0, the arcs among them, and the arcs that lead out of it.
 //
-// global(site) is the site's number in the whole, and for_each_site(visit) calls visit(Site inside,
-// Site in_the_whole) for all, in rising order; for_each_outward_arc(visit) calls
-// visit(Site inside, Site outside_in_the_whole, RelationId seen_from_inside). Two inner topologies
-// are equal when they have the same sites and arcs.
+// global(site) is the site's number in the whole. for_each_run(visit) calls visit(Site inside, Site
+// in_the_whole, std::size_t count) for all sites in rising order, each time for some that follow
+// each other both inside and in the whole. for_each_outward_arc(visit) calls visit(Site inside,
+// Site outside_in_the_whole, RelationId seen_from_inside). Two inner topologies are equal when they
+// have the same sites and arcs.
 template <class T>
 concept TopologyPart = Topology<typename T::Inner> && std::equality_comparable<typename T::Inner> &&
     requires(
         const T& part,
         Site site,
-        void (*visit_site)(Site, Site),
+        void (*visit_run)(Site, Site, std::size_t),
         void (*visit)(Site, Site, RelationId)
     ) {
     { part.inner() } -> std::convertible_to<const typename T::Inner&>;
     { part.global(site) } -> std::convertible_to<Site>;
-    part.for_each_site(visit_site);
+    part.for_each_run(visit_run);
     part.for_each_outward_arc(visit);
 };
+
+// Calls visit(Site inside, Site in_the_whole) for every site of the part, in rising order.
+template <TopologyPart Part, class Visit>
+void for_each_site(const Part& part, Visit visit) {
+    part.for_each_run([&visit](Site inside, Site whole, std::size_t count) {
+        for (const Site end = whole + static_cast<Site>(count); whole != end; ++whole) {
+            visit(inside++, whole);
+        }
+    });
+}
 
 }  // namespace modelsynth

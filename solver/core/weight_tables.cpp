@@ -14,9 +14,10 @@ constexpr double kWeightMost = 1e30;
 }  // namespace
 
 WeightTables::WeightTables(std::size_t site_count, std::vector<double> everywhere)
-    : table_of_site_(site_count), tables_{std::move(everywhere)} {}
+    : site_count_(site_count), tables_{std::move(everywhere)} {}
 
 bool WeightTables::multiply(Site site, std::size_t rule, const LabelSet& labels, double factor) {
+    table_of_site_.resize(site_count_);
     const std::tuple key(table_of_site_[site], rule, factor);
     auto known = products_.find(key);
     if (known == products_.end()) {

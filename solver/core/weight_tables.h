@@ -29,7 +29,8 @@ class WeightTables {
     [[nodiscard]] SiteWeights finish() &&;
 
   private:
-    std::vector<std::uint16_t> table_of_site_;
+    std::size_t site_count_;
+    std::vector<std::uint16_t> table_of_site_;  // empty: table 0 everywhere
     std::vector<std::vector<double>> tables_;
     // By table, rule and factor, the table of the product.
     std::map<std::tuple<std::uint16_t, std::size_t, double>, std::uint16_t> products_;

@@ -63,9 +63,7 @@ BlockResult BoxSearch::modify(
             const Cell in_box = {cell.x - box.min.x, cell.y - box.min.y, cell.z - box.min.z};
             inner.pin = Pin{static_cast<Site>(box.size().index(in_box)), options.pin->labels};
         }
-        return on_grid_.modify(
-            GridPart(problem_.size, problem_.periodic, box), model, inner, key, stop
-        );
+        return on_grid_.modify(part_of(box), model, inner, key, stop);
     }
     const GraphPart part = problem_.symmetries->close(box);
     const std::vector<Site> order = scan_images_last(problem_.size, box, scan, part);
@@ -83,7 +81,7 @@ bool BoxSearch::is_determined(
     if (on_graph_) {
         return on_graph_->is_determined(problem_.symmetries->close(box), model, stop);
     }
-    return on_grid_.is_determined(GridPart(problem_.size, problem_.periodic, box), model, stop);
+    return on_grid_.is_determined(part_of(box), model, stop);
 }
 
 void BoxSearch::note_change(const Box& box, std::span<const Label> model, ConstraintBoard& board)
@@ -116,6 +114,15 @@ Box BoxSearch::touched(const Box& box) const {
 
 std::size_t BoxSearch::largest_part() const {
     return std::max(on_grid_.largest_part(), on_graph_ ? on_graph_->largest_part() : 0);
+}
+
+const GridPart& BoxSearch::part_of(const Box& box) {
+    if (part_) {
+        part_->move_to(box);
+    } else {
+        part_.emplace(problem_.size, problem_.periodic, box);
+    }
+    return *part_;
 }
 
 std::span<const Site> BoxSearch::scan_of(const GridSize& shape) {

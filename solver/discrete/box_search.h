@@ -67,12 +67,14 @@ class BoxSearch {
     [[nodiscard]] std::size_t largest_part() const;
 
   private:
+    [[nodiscard]] const GridPart& part_of(const Box& box);
     // The box's cells in the order of the problem's scan, as numbers in the box.
     [[nodiscard]] std::span<const Site> scan_of(const GridSize& shape);
 
     const Problem& problem_;
     BlockSearch<GridPart> on_grid_;
     std::optional<BlockSearch<GraphPart>> on_graph_;  // where there are symmetries
+    std::optional<GridPart> part_;                    // the last one: most have the same shape
     std::vector<Site> scan_;
     GridSize scan_shape_;
 };

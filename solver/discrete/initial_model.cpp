@@ -11,6 +11,7 @@
 #include "solver/discrete/whole_by_sat.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -60,6 +61,12 @@ Error violated(const Example& example, const MemberRule& rule) {
         {}};
 }
 
+// One that may still be changed.
+struct Draft {
+    std::vector<Label> labels;
+    bool is_searched = false;
+};
+
 class Finder {
   public:
     Finder(
@@ -76,15 +83,15 @@ class Finder {
           stop_(stop) {}
 
     // One for which the member rules are not asked.
-    Result<InitialModel> find() {
+    Result<Draft> find() {
         if (const auto& plain = preparation_.plain_model()) {
-            return InitialModel{*plain, false};
+            return Draft{*plain, false};
         }
         Mender mender(problem_, search_, seed_, stop_);
         const auto layers =
             preparation_.is_plain_model_rigid() ? std::nullopt : find_layers(example_, problem_);
         if (layers || has_no_gap()) {
-            InitialModel model = {
+            Draft model = {
                 layers ? spread_layers(problem_, *layers) : problem_.start->labels, false};
             put_start(model.labels);
             if (mender.mend(model.labels)) {
@@ -110,7 +117,7 @@ class Finder {
             if (problem_.symmetries == nullptr && !problem_.start) {
                 auto tiled = find_any_tile(problem_, seed_, stop_);
                 if (tiled && mender.mend(*tiled)) {
-                    return InitialModel{std::move(*tiled), false};
+                    return Draft{std::move(*tiled), false};
                 }
             }
         }
@@ -128,11 +135,11 @@ class Finder {
         if (!*settled) {
             return tl::unexpected(with_dead_ends(gave_up(example_, problem_)));
         }
-        return InitialModel{std::move(**settled), true};
+        return Draft{std::move(**settled), true};
     }
 
     // The model, changed so that the member rules hold, or another one.
-    Result<InitialModel> satisfy(InitialModel model) {
+    Result<Draft> satisfy(Draft model) {
         const auto board = make_board(problem_, problem_.member_rules);
         if (!board->find_violated(model.labels)) {
             return model;
@@ -183,10 +190,10 @@ class Finder {
     }
 
     // Nothing when no attempt succeeded.
-    Result<std::optional<InitialModel>> solve_whole(
+    Result<std::optional<Draft>> solve_whole(
         std::uint32_t attempts, ConstraintBoard* board, Order order = Order::kScan
     ) {
-        InitialModel model = {std::vector<Label>(problem_.size.cell_count(), kNoLabel), true};
+        Draft model = {std::vector<Label>(problem_.size.cell_count(), kNoLabel), true};
         if (board != nullptr) {
             board->start(model.labels);
         }
@@ -208,7 +215,7 @@ class Finder {
             case BlockOutcome::kReverted:
                 break;
         }
-        return std::optional<InitialModel>();
+        return std::optional<Draft>();
     }
 
     const Preparation& preparation_;
@@ -248,14 +255,18 @@ std::optional<std::vector<Label>> find_plain_model(const Example& example, const
         return std::nullopt;
     }
     std::vector<Label> model = spread_layers(problem, *layers);
-    for (std::size_t i = 0; i < model.size(); ++i) {
-        const auto site = static_cast<Site>(i);
-        if (!problem.domains.at(site).contains(model[site]) ||
-            (problem.symmetries != nullptr && problem.symmetries->is_violated_at(model, site))) {
-            return std::nullopt;
+    bool fits = true;
+    const SiteDomains& domains = problem.domains;
+    domains.for_each_run(0, model.size(), [&](Site site, std::size_t count, std::uint16_t number) {
+        const LabelSet& own = domains.set(number);
+        for (std::size_t i = site; i < site + count; ++i) {
+            fits = fits && own.contains(model[i]);
         }
+    });
+    for (std::size_t i = 0; problem.symmetries != nullptr && i < model.size(); ++i) {
+        fits = fits && !problem.symmetries->is_violated_at(model, static_cast<Site>(i));
     }
-    return model;
+    return fits ? std::optional(std::move(model)) : std::nullopt;
 }
 
 Result<InitialModel> find_initial_model(
@@ -264,12 +275,20 @@ Result<InitialModel> find_initial_model(
     std::uint64_t seed,
     const std::stop_token& stop
 ) {
-    Finder finder(preparation, search, seed, stop);
-    auto model = finder.find();
-    if (!model || preparation.problem().member_rules.empty()) {
-        return model;
+    const bool is_ruled = !preparation.problem().member_rules.empty();
+    if (preparation.plain_model() != nullptr && !is_ruled) {
+        return InitialModel{preparation.plain_model(), false};
     }
-    return finder.satisfy(std::move(*model));
+    Finder finder(preparation, search, seed, stop);
+    auto draft = finder.find();
+    if (draft && is_ruled) {
+        draft = finder.satisfy(std::move(*draft));
+    }
+    if (!draft) {
+        return tl::unexpected(std::move(draft.error()));
+    }
+    return InitialModel{
+        std::make_shared<const std::vector<Label>>(std::move(draft->labels)), draft->is_searched};
 }
 
 }  // namespace modelsynth::discrete

@@ -8,6 +8,7 @@
 #include "solver/discrete/problem.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -16,7 +17,7 @@ namespace modelsynth::discrete {
 
 // A model that is consistent before any block is modified (Algorithm 3.4, lines 3-5).
 struct InitialModel {
-    std::vector<Label> labels;
+    std::shared_ptr<const std::vector<Label>> labels;  // the preparation's own where they will do
     bool is_searched = false;  // as varied as any; else plain: the blocks are to make it so
 };
 

@@ -7,26 +7,34 @@
 namespace modelsynth::discrete {
 
 std::vector<LabelSet> common_domains(const Problem& problem) {
-    std::vector<LabelSet> floors;
-    std::size_t site = 0;
-    for (std::int32_t y = 0; y < problem.size.y; ++y) {
-        std::map<const LabelSet*, std::size_t> counts;
-        const auto floor_sites =
-            static_cast<std::size_t>(problem.size.x) * static_cast<std::size_t>(problem.size.z);
-        const LabelSet* most = nullptr;
-        std::size_t most_count = 0;
-        for (std::size_t i = 0; i < floor_sites; ++i, ++site) {
-            if (problem.start && problem.start->is_kept[site] != 0) {
-                continue;
-            }
-            const LabelSet* set = &problem.domains.at(static_cast<Site>(site));
-            const std::size_t count = ++counts[set];
-            if (count > most_count) {
-                most = set;
-                most_count = count;
-            }
+    const auto floor_sites =
+        static_cast<std::size_t>(problem.size.x) * static_cast<std::size_t>(problem.size.z);
+    const auto count_free = [&](Site first, std::size_t count) {
+        if (!problem.start) {
+            return count;
         }
-        floors.push_back(most == nullptr ? problem.domains.at(static_cast<Site>(site - 1)) : *most);
+        const auto kept = problem.start->is_kept.begin() + static_cast<std::ptrdiff_t>(first);
+        return static_cast<std::size_t>(
+            std::count(kept, kept + static_cast<std::ptrdiff_t>(count), 0)
+        );
+    };
+    std::vector<LabelSet> floors;
+    for (std::size_t first = 0; first < problem.domains.site_count(); first += floor_sites) {
+        std::map<std::uint16_t, std::size_t> counts;
+        std::uint16_t most = problem.domains.number(static_cast<Site>(first + floor_sites - 1));
+        std::size_t most_count = 0;
+        problem.domains.for_each_run(
+            static_cast<Site>(first),
+            floor_sites,
+            [&](Site site, std::size_t sites, std::uint16_t number) {
+                const std::size_t count = counts[number] += count_free(site, sites);
+                if (count > most_count) {
+                    most = number;
+                    most_count = count;
+                }
+            }
+        );
+        floors.push_back(problem.domains.set(most));
     }
     return floors;
 }
@@ -86,10 +94,11 @@ std::optional<std::vector<Label>> find_layers(const Example& example, const Prob
 }
 
 std::vector<Label> spread_layers(const Problem& problem, const std::vector<Label>& layers) {
-    std::vector<Label> model(problem.size.cell_count());
-    const std::size_t floor_sites = model.size() / layers.size();
-    for (std::size_t site = 0; site < model.size(); ++site) {
-        model[site] = layers[site / floor_sites];
+    const std::size_t floor_sites = problem.size.cell_count() / layers.size();
+    std::vector<Label> model;
+    model.reserve(problem.size.cell_count());
+    for (const Label label : layers) {
+        model.insert(model.end(), floor_sites, label);
     }
     return model;
 }

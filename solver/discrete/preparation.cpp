@@ -1,5 +1,6 @@
 #include "solver/discrete/preparation.h"
 
+#include "solver/discrete/box_labels.h"
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/search_keys.h"
@@ -32,10 +33,12 @@ Preparation::Preparation(
       problem_(std::move(problem)),
       order_(parameters.order.order) {
     if (const auto& blocks = *parameters_.blocks) {
-        plain_model_ = find_plain_model(*example_, problem_);
-        if (plain_model_ && !can_change_middle(blocks->layout.size, stop)) {
-            is_plain_model_rigid_ = true;
-            plain_model_.reset();
+        if (auto plain = find_plain_model(*example_, problem_)) {
+            plain_model_ = std::make_shared<const std::vector<Label>>(std::move(*plain));
+            if (!can_change_middle(blocks->layout.size, stop)) {
+                is_plain_model_rigid_ = true;
+                plain_model_.reset();
+            }
         }
     }
     if (parameters_.order.is_chosen_for_it) {
@@ -90,13 +93,16 @@ Order Preparation::choose_order(const std::stop_token& stop) {
     const auto& blocks = *parameters_.blocks;
     const Box box = middle(blocks ? blocks->layout.size : kProbeSize);
     auto search = take_search();
+    // What stands around the box is not known yet, so nothing is asked of it.
+    std::vector<Label> model(problem_.size.cell_count(), kNoLabel);
+    const Box touched = search->touched(box);
+    const std::vector<Label> nothing(touched.size().cell_count(), kNoLabel);
     const auto successes = [&](Order order) {
         std::uint32_t count = 0;
         for (std::uint32_t probe = 0; probe < kProbes; ++probe) {
-            // What stands around it is not known yet, so nothing is asked of it.
-            std::vector<Label> model(problem_.size.cell_count(), kNoLabel);
             const auto result =
                 search->modify(box, model, {1, order}, {0, kProbeKeys + probe, 0, 0}, stop);
+            copy_in(problem_.size, nothing, touched, model);
             count += result.outcome == BlockOutcome::kAccepted && result.backtracks == 0 ? 1U : 0U;
         }
         return count;

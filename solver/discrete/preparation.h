@@ -41,9 +41,9 @@ class Preparation {
 
     [[nodiscard]] const Problem& problem() const { return problem_; }
 
-    // See find_plain_model(); nothing either when the whole is made at once, when another model is
-    // started from, or when it is rigid.
-    [[nodiscard]] const std::optional<std::vector<Label>>& plain_model() const {
+    // See find_plain_model(); null when there is none, when the whole is made at once, when another
+    // model is started from, or when it is rigid.
+    [[nodiscard]] const std::shared_ptr<const std::vector<Label>>& plain_model() const {
         return plain_model_;
     }
 
@@ -80,7 +80,7 @@ class Preparation {
     std::shared_ptr<const Example> example_;
     Parameters parameters_;
     Problem problem_;
-    std::optional<std::vector<Label>> plain_model_;
+    std::shared_ptr<const std::vector<Label>> plain_model_;
     bool is_plain_model_rigid_ = false;
     Order order_;
     BoxSearch::Bases bases_;

@@ -46,24 +46,28 @@ std::vector<double> weights_of(const Example& example, const Weights& weights) {
 
 // Fails when some site has no label left before any neighbour was asked.
 Result<void> check_domains(const Problem& problem) {
-    for (std::size_t site = 0; site < problem.domains.site_count(); ++site) {
-        if (!problem.domains.at(static_cast<Site>(site)).empty()) {
-            continue;
-        }
-        const Cell cell = problem.size.cell(site);
-        const std::string sides = name_sides(problem.size, cell);
-        const bool is_kept = problem.start && problem.start->is_kept[site] != 0;
-        return tl::unexpected(Error{
-            ErrorCode::kContradiction,
-            "no piece can stand at cell " + name_cell(cell) +
-                (sides.empty() ? "" : ", on " + sides) +
-                (is_kept ? ": the boundary and the constraints forbid what stands there in the "
-                           "model that this one starts from"
-                         : ": what the boundary and the constraints allow there has nothing in "
-                           "common"),
-            {}});
+    std::optional<Site> impossible;
+    const SiteDomains& domains = problem.domains;
+    domains
+        .for_each_run(0, domains.site_count(), [&](Site site, std::size_t, std::uint16_t number) {
+            if (!impossible && domains.set(number).empty()) {
+                impossible = site;
+            }
+        });
+    if (!impossible) {
+        return {};
     }
-    return {};
+    const Cell cell = problem.size.cell(*impossible);
+    const std::string sides = name_sides(problem.size, cell);
+    const bool is_kept = problem.start && problem.start->is_kept[*impossible] != 0;
+    return tl::unexpected(Error{
+        ErrorCode::kContradiction,
+        "no piece can stand at cell " + name_cell(cell) + (sides.empty() ? "" : ", on " + sides) +
+            (is_kept ? ": the boundary and the constraints forbid what stands there in the "
+                       "model that this one starts from"
+                     : ": what the boundary and the constraints allow there has nothing in "
+                       "common"),
+        {}});
 }
 
 // The model to start from, in its place; what it keeps is fixed.

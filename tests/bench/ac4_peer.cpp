@@ -231,7 +231,7 @@ std::optional<std::uint32_t> Ac4Peer::modify(
             catalog.restore(*start);
         }
         if (attempt(workspace, key)) {
-            part.for_each_site([&](Site inside, Site whole) {
+            for_each_site(part, [&](Site inside, Site whole) {
                 for_each_label(catalog.labels(inside), [&](Label label) { model[whole] = label; });
             });
             return key.attempt;
@@ -287,7 +287,7 @@ Ac4Peer::Workspace& Ac4Peer::workspace_for(const GridPart& part) {
 // Null when nothing fits.
 const Ac4State* Ac4Peer::find_or_make_base(const GridPart& part, Workspace& workspace) const {
     workspace.domains.resize(workspace.topology.site_count());
-    part.for_each_site([&](Site inside, Site whole) {
+    for_each_site(part, [&](Site inside, Site whole) {
         workspace.domains[inside] = problem_.domains.number(whole);
     });
     for (const auto& base : workspace.bases) {
@@ -296,7 +296,7 @@ const Ac4State* Ac4Peer::find_or_make_base(const GridPart& part, Workspace& work
         }
     }
     std::vector<Word> sets;
-    part.for_each_site([&](Site, Site whole) {
+    for_each_site(part, [&](Site, Site whole) {
         const std::span<const Word> own = problem_.domains.words(whole);
         sets.insert(sets.end(), own.begin(), own.end());
     });

@@ -45,7 +45,7 @@ class ConstraintBoard {
     template <TopologyPart Part>
     void enter(const Part& part) {
         inside_.clear();
-        part.for_each_site([this](Site inside, Site whole) {
+        for_each_site(part, [this](Site inside, Site whole) {
             inside_of_[whole] = inside;
             inside_.push_back(whole);
         });

@@ -46,7 +46,7 @@ class PartPropagation {
         catalog_.enqueue_all();
         is_open_consistent_ = catalog_.propagate(stop) == Propagation::kConsistent;
         base_.assign(catalog_.all_labels().begin(), catalog_.all_labels().end());
-        part_.for_each_site([&](Site inside, Site whole) {
+        for_each_site(part_, [&](Site inside, Site whole) {
             if (!(problem.domains.at(whole) == everything)) {
                 narrowed_.push_back({inside, whole});
             }

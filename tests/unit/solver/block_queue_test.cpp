@@ -1,6 +1,8 @@
 #include "solver/core/block_queue.h"
 
 #include "solver/core/block_schedule.h"
+#include "solver/core/box_index.h"
+#include "solver/core/random.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace modelsynth {
@@ -115,6 +118,46 @@ TEST(BlocksMeet, WhenTheyOverlapOrTouchAlsoAcrossASeam) {
     EXPECT_FALSE(blocks_meet(west, east, model, {}));
     EXPECT_TRUE(blocks_meet(west, east, model, {true, false, false}));
     EXPECT_FALSE(blocks_meet(west, apart, model, {}));
+}
+
+TEST(BoxIndex, FindsEveryBoxThatMeetsOneAndEachOnce) {
+    const GridSize model = {23, 5, 31};
+    RandomStream random({7, 0, 0, 0});
+    for (int round = 0; round < 200; ++round) {
+        // Of small boxes there are many places, of large ones only one along an axis.
+        const std::uint32_t longest = 1 + random.below(round % 10 == 0 ? 5 : 3);
+        std::vector<Box> boxes;
+        for (int i = 0; i < 40; ++i) {
+            const auto span = [&](std::int32_t extent) {
+                const auto length = static_cast<std::int32_t>(1 + random.below(longest));
+                const auto start = static_cast<std::int32_t>(
+                    random.below(static_cast<std::uint32_t>(extent - length + 1))
+                );
+                return std::pair(start, start + length);
+            };
+            const auto [west, east] = span(model.x);
+            const auto [bottom, top] = span(model.y);
+            const auto [north, south] = span(model.z);
+            boxes.push_back({{west, bottom, north}, {east, top, south}});
+        }
+        BoxIndex index(model, boxes);
+        for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+            index.add(i, boxes[i]);
+        }
+        for (std::uint32_t i = 0; i < boxes.size(); i += 3) {
+            index.remove(i, boxes[i]);
+        }
+        for (const Box& box : boxes) {
+            std::multiset<std::uint32_t> near;
+            index.for_each_near(box, [&near](std::uint32_t number) { near.insert(number); });
+            for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+                ASSERT_LE(near.count(i), i % 3 == 0 ? 0U : 1U);
+                if (i % 3 != 0 && blocks_meet(boxes[i], box, model, {true, true, true})) {
+                    ASSERT_EQ(near.count(i), 1U);
+                }
+            }
+        }
+    }
 }
 
 // A row of blocks side by side: each waits for the one before it.

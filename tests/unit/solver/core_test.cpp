@@ -206,6 +206,37 @@ TEST(GridPart, TogetherWithItsOutwardArcsHasEveryArcOfTheWhole) {
     }
 }
 
+TEST(GridPart, IsAfterAMoveAsIfMadeAnew) {
+    const GridSize size = {5, 4, 6};
+    const Periodic periodic = {true, false, false};
+    const std::vector<Box> boxes = {
+        {{0, 0, 0}, {3, 2, 2}},
+        {{2, 1, 4}, {5, 3, 6}},  // of the same shape
+        {{0, 0, 0}, {5, 2, 2}},  // closed along x
+        {{0, 2, 4}, {5, 4, 6}},
+        {{1, 1, 1}, {2, 2, 2}}};
+    const auto describe = [](const GridPart& part) {
+        std::vector<std::array<std::size_t, 4>> all;
+        part.for_each_run([&](Site inside, Site whole, std::size_t count) {
+            all.push_back({0, inside, whole, count});
+        });
+        part.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
+            all.push_back({1, inside, outside, relation});
+        });
+        for (Site site = 0; site < part.inner().site_count(); ++site) {
+            part.inner().for_each_arc(site, [&](Site to, RelationId relation) {
+                all.push_back({2, site, to, relation});
+            });
+        }
+        return all;
+    };
+    GridPart moved(size, periodic, boxes.front());
+    for (const Box& box : boxes) {
+        moved.move_to(box);
+        EXPECT_EQ(describe(moved), describe(GridPart(size, periodic, box)));
+    }
+}
+
 TEST(Schedule, CoversEveryCellAndEndsWithTheModel) {
     const auto blocks = schedule_blocks({23, 7, 10}, {{10, 10, 4}, 0.5, 1}, 1000);
     ASSERT_TRUE(blocks);
@@ -385,6 +416,52 @@ TEST(SiteDomains, NarrowingKeepsTheIntersectionAndSharesSets) {
     EXPECT_TRUE(domains.at(7).contains(0));
     EXPECT_EQ(domains.at(8), even);
     EXPECT_EQ(domains.at(60).count(), 5U);
+}
+
+// Sites of one set are kept many at a time: the same must come of it at their borders.
+TEST(SiteDomains, TellEverySitesNumberHoweverManyAreAskedForAtOnce) {
+    constexpr std::size_t kSites = 333;
+    SiteDomains domains(kSites, LabelSet::all(4));
+    std::vector<std::set<Label>> expected(kSites, {0, 1, 2, 3});
+    const auto narrow = [&](Site first, Site last, Label gone) {
+        LabelSet allowed = LabelSet::all(4);
+        allowed.erase(gone);
+        for (Site site = first; site <= last; ++site) {
+            domains.narrow(site, allowed);
+            expected[site].erase(gone);
+        }
+    };
+    narrow(64, 127, 0);
+    narrow(100, 200, 1);
+    narrow(332, 332, 2);
+    domains.repeat(5, 332);
+    expected[5] = expected[332];
+    domains.repeat(100, 0);
+    expected[100] = expected[0];
+    for (std::size_t count : {std::size_t{1}, std::size_t{10}, std::size_t{64}, kSites}) {
+        for (std::size_t first = 0; first + count <= kSites; ++first) {
+            std::vector<std::uint16_t> numbers(count);
+            domains.copy_numbers(static_cast<Site>(first), numbers);
+            std::vector<std::uint16_t> of_runs;
+            domains.for_each_run(
+                static_cast<Site>(first),
+                count,
+                [&](Site site, std::size_t run, std::uint16_t number) {
+                    ASSERT_EQ(site, first + of_runs.size());
+                    of_runs.insert(of_runs.end(), run, number);
+                }
+            );
+            ASSERT_EQ(numbers, of_runs);
+            for (std::size_t i = 0; i < count; ++i) {
+                ASSERT_EQ(numbers[i], domains.number(static_cast<Site>(first + i)));
+                std::set<Label> labels;
+                for_each_label(domains.set(numbers[i]).words(), [&labels](Label label) {
+                    labels.insert(label);
+                });
+                ASSERT_EQ(labels, expected[first + i]) << first + i;
+            }
+        }
+    }
 }
 
 }  // namespace

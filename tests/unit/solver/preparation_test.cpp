@@ -103,10 +103,10 @@ TEST(InitialModel, OfAnExampleWithoutGroundIsSearchedOrWhenLargeATile) {
     const auto example = chequers();
     const InitialModel small = initial_model(example, {30, 1, 20});
     EXPECT_TRUE(small.is_searched);
-    EXPECT_FALSE(testing::find_inconsistency(*example, {30, 1, 20}, small.labels));
+    EXPECT_FALSE(testing::find_inconsistency(*example, {30, 1, 20}, *small.labels));
     const InitialModel large = initial_model(example, {400, 1, 401});
     EXPECT_FALSE(large.is_searched);
-    EXPECT_FALSE(testing::find_inconsistency(*example, {400, 1, 401}, large.labels));
+    EXPECT_FALSE(testing::find_inconsistency(*example, {400, 1, 401}, *large.labels));
 }
 
 // A floor of two pieces that alternate, air above: air everywhere is a model, and no block of it
@@ -134,7 +134,7 @@ TEST(InitialModel, OfGroundIsPlainAndDependsOnNoSeed) {
     for (const std::uint64_t seed : {1U, 2U}) {
         const auto found = find_initial_model(*preparation, *search, seed, {});
         EXPECT_FALSE(found->is_searched);
-        EXPECT_EQ(found->labels, preparation->plain_model());
+        EXPECT_EQ(*found->labels, *preparation->plain_model());
     }
 }
 
