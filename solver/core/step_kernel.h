@@ -47,11 +47,11 @@ struct StepState {
 // Catalog::propagate() where every neighbour is a fixed step away: the loop that most of all time
 // is spent in. It looks at all neighbours of a site at once and keeps its state in registers.
 //
-// Sets of one word are looked at four at a time while the queue has as many. What a set allows is a
-// chain of loads that ends in a branch nobody can predict - which neighbours change -, and four
-// chains and one such branch take hardly longer than one of each. A site of the four may be changed
-// by another one: then it is in the queue again, and what was taken by its older, larger set was
-// right as far as it went. (Larger sets are looked up in loops of their own; there it costs.)
+// Sets of one or two words are looked at four at a time while the queue has as many. What a set
+// allows is a chain of loads that ends in a branch nobody can predict - which neighbours change -,
+// and four chains and one such branch take hardly longer than one of each. A site of the four may
+// be changed by another one: then it is in the queue again, and what was taken by its older, larger
+// set was right as far as it went. (Of larger sets it gains nothing.)
 //
 // One source serves every VectorLevel; the compiler makes of it what the level allows, so results
 // are the same.
@@ -70,7 +70,7 @@ class StepKernel {
     static constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
     static constexpr std::size_t kStride = Relations::stride_for(kRelations, kWords);
     static constexpr std::size_t kStopInterval = 256;
-    static constexpr std::size_t kLanes = kWords == 1 ? 4 : 1;  // sites looked at together
+    static constexpr std::size_t kLanes = kWords <= 2 ? 4 : 1;  // sites looked at together
     static constexpr std::size_t kLaneBits = 8;                 // of the mask of changes, for each
     static_assert(kRelations <= kLaneBits);
 
@@ -105,12 +105,19 @@ class StepKernel {
             }
         } else {
             for (std::size_t word = 0; word < kWords; ++word) {
-                for (Word bits = own[word]; bits != 0;) {
-                    const auto group =
-                        static_cast<std::size_t>(std::countr_zero(bits)) / kGroupBits;
-                    const std::size_t shift = group * kGroupBits;
-                    add(unions, word * kGroups + group, bits >> shift & kMembers, sum);
+                Word bits = own[word];
+                const auto add_first = [&]() __attribute__((always_inline)) {
+                    // Of no labels: those of group 0 that are in the set, none.
+                    const std::size_t shift =
+                        static_cast<std::size_t>(std::countr_zero(bits)) & (kWordBits - kGroupBits);
+                    add(unions, word * kGroups + shift / kGroupBits, bits >> shift & kMembers, sum);
                     bits &= ~(kMembers << shift);
+                };
+                if constexpr (kLanes > 1) {
+                    add_first();  // most words have labels of one group, and a branch costs more
+                }
+                while (bits != 0) {
+                    add_first();
                 }
             }
         }
