@@ -1,6 +1,5 @@
 #include "solver/discrete/preparation.h"
 
-#include "solver/discrete/box_labels.h"
 #include "solver/discrete/explanation/explain.h"
 #include "solver/discrete/initial_model.h"
 #include "solver/discrete/search_keys.h"
@@ -93,16 +92,14 @@ Order Preparation::choose_order(const std::stop_token& stop) {
     const auto& blocks = *parameters_.blocks;
     const Box box = middle(blocks ? blocks->layout.size : kProbeSize);
     auto search = take_search();
-    // What stands around the box is not known yet, so nothing is asked of it.
+    // What stands around the box is not known yet, so nothing is asked of it; what a trial leaves
+    // in the box says nothing to the next one.
     std::vector<Label> model(problem_.size.cell_count(), kNoLabel);
-    const Box touched = search->touched(box);
-    const std::vector<Label> nothing(touched.size().cell_count(), kNoLabel);
     const auto successes = [&](Order order) {
         std::uint32_t count = 0;
         for (std::uint32_t probe = 0; probe < kProbes; ++probe) {
             const auto result =
                 search->modify(box, model, {1, order}, {0, kProbeKeys + probe, 0, 0}, stop);
-            copy_in(problem_.size, nothing, touched, model);
             count += result.outcome == BlockOutcome::kAccepted && result.backtracks == 0 ? 1U : 0U;
         }
         return count;

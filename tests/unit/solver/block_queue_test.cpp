@@ -2,12 +2,14 @@
 
 #include "solver/core/block_schedule.h"
 #include "solver/core/box_index.h"
+#include "solver/core/parallel_blocks.h"
 #include "solver/core/random.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -209,6 +211,31 @@ TEST(BlockQueue, RunsAheadOfTheReportsNoFurtherThanAllowed) {
     queue.finish(0);
     EXPECT_EQ(queue.next_step().kind, BlockQueue::Step::Kind::kReport);
     EXPECT_EQ(queue.take(), 2U);
+}
+
+// What a block came to may be large, and many blocks come.
+TEST(ParallelBlocks, ForgetWhatABlockCameToOnceItIsReported) {
+    constexpr std::uint32_t kBlocks = 40;
+    using Solved = std::shared_ptr<const std::uint32_t>;
+    const std::vector<Box> blocks = row(kBlocks, 1);
+    const auto solve = [](std::uint32_t block) -> std::optional<Solved> {
+        return std::make_shared<const std::uint32_t>(block);
+    };
+    std::vector<std::weak_ptr<const std::uint32_t>> reported;
+    const bool is_done = ParallelBlocks<Solved>(kRowSize, {}, blocks, 0)
+                             .run(
+                                 3,
+                                 solve,
+                                 [&] { return solve; },
+                                 [&](std::uint32_t block, const Solved& solved) {
+                                     EXPECT_EQ(block, reported.size());
+                                     EXPECT_EQ(*solved, block);
+                                     EXPECT_TRUE(reported.empty() || reported.back().expired());
+                                     reported.emplace_back(solved);
+                                 }
+                             );
+    EXPECT_TRUE(is_done);
+    EXPECT_EQ(reported.size(), kBlocks);
 }
 
 TEST(BlockQueue, GoesOnAfterTheBlocksThatAreDone) {
