@@ -111,10 +111,13 @@ std::optional<NamedFrame> decode_named_frame(std::string_view bytes) {
 }
 
 std::string encode_labels(std::span<const Label> labels) {
-    std::string payload;
-    payload.reserve(labels.size() * 2);
+    std::string payload(labels.size() * 2, '\0');
+    // By a pointer of its own: as bytes of the string each write could change where that is.
+    char* into = payload.data();
     for (const Label label : labels) {
-        append(payload, label, 2);
+        into[0] = static_cast<char>(label & 0xFF);
+        into[1] = static_cast<char>(label >> 8);
+        into += 2;
     }
     return payload;
 }

@@ -6,6 +6,17 @@ namespace modelsynth::server {
 
 Stored<std::optional<Claim>> Capacity::claim(JobStore& jobs, proto::UnixMillis now) {
     // Two workers must not see the same room.
+    const std::lock_guard claiming(claiming_);
+    auto claim = jobs.claim(now, free());
+    if (claim && *claim) {
+        const std::lock_guard lock(mutex_);
+        memory_bytes_ += (*claim)->memory_bytes;
+        large_jobs_ += is_large(**claim) ? 1U : 0U;
+    }
+    return claim;
+}
+
+ClaimLimits Capacity::free() {
     const std::lock_guard lock(mutex_);
     ClaimLimits free;
     free.memory_bytes_max = limits_.memory_bytes - std::min(limits_.memory_bytes, memory_bytes_);
@@ -16,17 +27,16 @@ Stored<std::optional<Claim>> Capacity::claim(JobStore& jobs, proto::UnixMillis n
     if (large_jobs_ >= limits_.large_jobs) {
         free.cost_max = limits_.large_cost;
     }
-    auto claim = jobs.claim(now, free);
-    if (claim && *claim) {
-        memory_bytes_ += (*claim)->memory_bytes;
-        large_jobs_ += is_large(**claim) ? 1U : 0U;
-    }
-    return claim;
+    return free;
 }
 
-void Capacity::give_back(const Claim& claim) {
+void Capacity::give_back_memory(const Claim& claim) {
     const std::lock_guard lock(mutex_);
     memory_bytes_ -= claim.memory_bytes;
+}
+
+void Capacity::give_back_turn(const Claim& claim) {
+    const std::lock_guard lock(mutex_);
     large_jobs_ -= is_large(claim) ? 1U : 0U;
 }
 

@@ -25,15 +25,20 @@ class Capacity {
 
     // As JobStore::claim(); what was handed out is given back at the end.
     [[nodiscard]] Stored<std::optional<Claim>> claim(JobStore& jobs, proto::UnixMillis now);
-    void give_back(const Claim& claim);
+    void give_back_memory(const Claim& claim);
+    // That of a large job, if it is one.
+    void give_back_turn(const Claim& claim);
 
   private:
+    [[nodiscard]] ClaimLimits free();
+
     [[nodiscard]] bool is_large(const Claim& claim) const {
         return claim.cost > limits_.large_cost;
     }
 
     const CapacityLimits limits_;
-    std::mutex mutex_;
+    std::mutex claiming_;
+    std::mutex mutex_;                // taken for moments, what follows is guarded by it
     std::uint64_t memory_bytes_ = 0;  // in use
     std::size_t large_jobs_ = 0;      // in hand
 };

@@ -24,6 +24,9 @@ using proto::Parsed;
 // same.
 constexpr std::uint64_t kJobCost = 1000;
 
+// Threads beyond the places for workers are those that may linger with jobs that were stopped.
+constexpr std::size_t kThreadsPerPlace = 4;
+
 }  // namespace
 
 CapacityLimits capacity_of(const JobServiceConfig& config) {
@@ -54,10 +57,12 @@ JobService::JobService(
       artifacts_(artifacts),
       log_(std::move(log)),
       examples_(examples, artifacts, config_.limits, config.examples_max),
+      previews_(jobs_, artifacts_, live_, log_),
       capacity_(capacity_of(config)),
       models_(jobs_, artifacts_, examples_, live_, preparations_, config_.limits),
+      free_places_(config.workers),
       observer_(observer) {
-    for (std::size_t i = 0; i < config_.workers; ++i) {
+    for (std::size_t i = 0; i < kThreadsPerPlace * config_.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) {
             ::pthread_setname_np(::pthread_self(), "worker");
             work(stop);
@@ -77,27 +82,22 @@ void JobService::work(const std::stop_token& stop) {
         artifacts_,
         examples_,
         live_,
+        previews_,
         running_,
         preparations_,
         config_.limits,
         log_,
         observer_};
     std::uint64_t seen = 0;
-    while (!stop.stop_requested() && !draining_) {
+    bool has_place = take_place(stop);
+    while (has_place && !stop.stop_requested() && !draining_) {
         {
             const std::lock_guard lock(mutex_);
             seen = submissions_;
         }
         const auto claim = capacity_.claim(jobs_, proto::now_millis());
         if (claim && *claim) {
-            ++jobs_in_hand_;
-            const std::size_t threads = threads_for_a_job();
-            run_claim(context, **claim, static_cast<std::uint32_t>(threads));
-            capacity_.give_back(**claim);
-            drain_rate_.on_let_go(DrainRate::Clock::now());
-            const std::lock_guard lock(mutex_);
-            --jobs_in_hand_;
-            let_go_.notify_all();
+            has_place = run(context, **claim) || take_place(stop);
             continue;
         }
         std::unique_lock lock(mutex_);
@@ -105,6 +105,37 @@ void JobService::work(const std::stop_token& stop) {
         queued_.wait_for(lock, stop, kPoll, [&] { return submissions_ != seen || draining_; });
         --idle_workers_;
     }
+}
+
+bool JobService::take_place(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    if (!place_free_.wait(lock, stop, [this] { return free_places_ > 0; })) {
+        return false;
+    }
+    --free_places_;
+    return true;
+}
+
+bool JobService::run(const WorkerContext& context, const Claim& claim) {
+    ++jobs_in_hand_;
+    bool has_place = true;
+    const auto pass_on = [&] {
+        capacity_.give_back_turn(claim);
+        const std::lock_guard lock(mutex_);
+        ++free_places_;
+        place_free_.notify_one();
+        has_place = false;
+    };
+    run_claim(context, claim, static_cast<std::uint32_t>(threads_for_a_job()), pass_on);
+    if (has_place) {
+        capacity_.give_back_turn(claim);
+    }
+    capacity_.give_back_memory(claim);
+    drain_rate_.on_let_go(DrainRate::Clock::now());
+    const std::lock_guard lock(mutex_);
+    --jobs_in_hand_;
+    let_go_.notify_all();
+    return has_place;
 }
 
 std::size_t JobService::threads_for_a_job() {
@@ -255,7 +286,7 @@ Parsed<void> JobService::erase(const std::string& id) {
     const auto job = jobs_.find(id);
     auto erased = jobs_.erase(id);
     if (job && job->state == JobState::kRunning) {
-        running_.stop(id, StopReason::kLost);
+        running_.stop(id, StopReason::kErased);
         running_.settle(id);  // ids are never used again, so nothing will ask
     }
     live_.forget(id);

@@ -13,6 +13,7 @@
 #include "server/jobs/job_models.h"
 #include "server/jobs/job_observer.h"
 #include "server/jobs/live_job.h"
+#include "server/jobs/preview_keeper.h"
 #include "server/jobs/running_jobs.h"
 #include "server/jobs/worker.h"
 #include "server/store/artifact_store.h"
@@ -125,6 +126,10 @@ class JobService {
 
   private:
     void work(const std::stop_token& stop);
+    // Waits for a place; whether there is one and not a stop.
+    [[nodiscard]] bool take_place(const std::stop_token& stop);
+    // Runs the claim; whether this thread still has its place.
+    [[nodiscard]] bool run(const WorkerContext& context, const Claim& claim);
     // For a job that is claimed now: workers that have nothing to do help, as far as there are
     // processors for them.
     [[nodiscard]] std::size_t threads_for_a_job();
@@ -148,6 +153,7 @@ class JobService {
     ExampleLibrary examples_;
     ExampleAnalyses analyses_;
     LiveJobs live_;
+    PreviewKeeper previews_;
     RunningJobs running_;
     Capacity capacity_;
     DrainRate drain_rate_{DrainRate::Clock::now()};
@@ -159,6 +165,10 @@ class JobService {
     std::condition_variable_any queued_;
     std::uint64_t submissions_ = 0;  // guarded by mutex_; tells sleeping workers of news
     std::size_t idle_workers_ = 0;   // guarded by mutex_
+    // How many workers there may be at once, of more threads than that: one whose job was told to
+    // stop and that lingers with it passes its place on. Guarded by mutex_.
+    std::size_t free_places_;
+    std::condition_variable_any place_free_;
     std::atomic<std::size_t> jobs_in_hand_ = 0;
     std::condition_variable let_go_;  // of a job in hand
     JobObserver& observer_;

@@ -5,7 +5,8 @@
 
 namespace modelsynth::server {
 
-RunningJobs::Entry::Entry(RunningJobs& jobs, std::string id) : jobs_(jobs), id_(std::move(id)) {
+RunningJobs::Entry::Entry(RunningJobs& jobs, std::string id, std::function<void()> on_lingering)
+    : jobs_(jobs), id_(std::move(id)), on_lingering_(std::move(on_lingering)) {
     const std::lock_guard lock(jobs_.mutex_);
     jobs_.entries_[id_] = this;
     const auto early = jobs_.early_.find(id_);
@@ -24,7 +25,7 @@ RunningJobs::Entry::~Entry() {
 void RunningJobs::Entry::set_deadline(Clock::time_point deadline) {
     const std::lock_guard lock(jobs_.mutex_);
     deadline_ = deadline;
-    jobs_.deadlines_changed_ = true;
+    jobs_.times_changed_ = true;
     jobs_.changed_.notify_all();
 }
 
@@ -78,6 +79,12 @@ void RunningJobs::stop_entry(Entry& entry, StopReason reason) {
     if (entry.reason_ == StopReason::kNone) {
         entry.reason_ = reason;
         entry.source_.request_stop();
+        if (reason == StopReason::kCancelled || reason == StopReason::kDeadline ||
+            reason == StopReason::kErased) {
+            entry.patience_ends_ = Clock::now() + kPatience;
+            times_changed_ = true;
+            changed_.notify_all();
+        }
     }
 }
 
@@ -90,10 +97,14 @@ void RunningJobs::watch(const std::stop_token& stop) {
                 stop_entry(*entry, StopReason::kDeadline);
                 entry->deadline_ = Clock::time_point::max();
             }
-            next = std::min(next, entry->deadline_);
+            if (entry->patience_ends_ <= Clock::now()) {
+                entry->patience_ends_ = Clock::time_point::max();
+                entry->on_lingering_();
+            }
+            next = std::min({next, entry->deadline_, entry->patience_ends_});
         }
-        deadlines_changed_ = false;
-        changed_.wait_until(lock, stop, next, [this] { return deadlines_changed_; });
+        times_changed_ = false;
+        changed_.wait_until(lock, stop, next, [this] { return times_changed_; });
     }
 }
 

@@ -48,11 +48,16 @@ std::string problem_text(const Claim& claim, proto::Problem problem) {
 // One claim in hand.
 class ClaimRun {
   public:
-    ClaimRun(const WorkerContext& context, const Claim& claim, std::uint32_t threads)
+    ClaimRun(
+        const WorkerContext& context,
+        const Claim& claim,
+        std::uint32_t threads,
+        std::function<void()> on_lingering
+    )
         : context_(context),
           claim_(claim),
           threads_(threads),
-          running_(context.running, claim.lease.job_id) {}
+          running_(context.running, claim.lease.job_id, std::move(on_lingering)) {}
 
     void run() {
         const proto::Job& job = claim_.job;
@@ -136,7 +141,9 @@ class ClaimRun {
         } else {
             make_one(request.task);
         }
-        context_.live.retire(claim_.lease.job_id);
+        if (!is_preview_kept_) {
+            context_.live.retire(claim_.lease.job_id);
+        }
     }
 
     void make_one(const Task& task) {
@@ -331,8 +338,9 @@ class ClaimRun {
                     )
                 );
                 return;
+            case StopReason::kErased:
             case StopReason::kLost:
-                // Erased, or the store cannot be written: then the next start takes it up again.
+                // Where the store cannot be written, the next start takes it up again.
                 release(solved_seconds);
                 return;
             case StopReason::kCancelled:
@@ -350,24 +358,20 @@ class ClaimRun {
         }
     }
 
-    // Ends the job with what there is of its model as its preview.
+    // Ends the job; what there is of its model is kept as its preview when the worker is free.
     void end_unfinished(proto::JobState state, const std::optional<proto::Problem>& problem) {
         Outcome outcome;
         outcome.state = state;
         if (problem) {
             outcome.error = problem_text(claim_, *problem);
         }
+        link_example(outcome.artifacts);
+        auto job = finish(std::move(outcome));
         // Without a live model not even its space was known yet.
-        const LiveJob::State preview = live_ == nullptr ? LiveJob::State() : live_->state();
-        std::optional<Stored<std::unique_ptr<ArtifactStore::Pin>>> pin;
-        if (preview.any_block) {
-            pin = context_.artifacts.put(proto::encode_labels(preview.model.labels));
-            if (*pin) {
-                outcome.artifacts = {{kPreviewArtifact, (**pin)->digest()}};
-                link_example(outcome.artifacts);
-            }
+        if (job && live_ != nullptr) {
+            context_.previews.keep(std::move(*job));
+            is_preview_kept_ = true;
         }
-        finish(std::move(outcome));
     }
 
     void fail(const proto::Problem& problem) {
@@ -377,12 +381,15 @@ class ClaimRun {
         finish(std::move(outcome));
     }
 
-    void finish(Outcome outcome) {
+    // The job, when it has ended.
+    std::optional<proto::Job> finish(Outcome outcome) {
         outcome.finished = proto::now_millis();
-        const auto job = context_.jobs.finish(claim_.lease, outcome);
+        auto job = context_.jobs.finish(claim_.lease, outcome);
         if (job) {
             report_end(context_, *job, seconds());
-        } else if (job.error().code != StoreErrorCode::kLeaseLost) {
+            return std::move(*job);
+        }
+        if (job.error().code != StoreErrorCode::kLeaseLost) {
             log_event(
                 *context_.log,
                 spdlog::level::err,
@@ -393,6 +400,7 @@ class ClaimRun {
             );
             release(claim_.solved_seconds);
         }
+        return std::nullopt;
     }
 
     // Gives the job back. While the disk is full, say, there is no use in other work either, so
@@ -429,13 +437,19 @@ class ClaimRun {
     std::string example_name_ = "inline";  // as the observer is told
     Clock::time_point begun_ = Clock::now();
     std::shared_ptr<LiveJob> live_;
+    bool is_preview_kept_ = false;  // or will be, from the live model
 };
 
 }  // namespace
 
-void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t threads) {
+void run_claim(
+    const WorkerContext& context,
+    const Claim& claim,
+    std::uint32_t threads,
+    std::function<void()> on_lingering
+) {
     try {
-        ClaimRun(context, claim, threads).run();
+        ClaimRun(context, claim, threads, std::move(on_lingering)).run();
     } catch (const std::exception& error) {
         log_event(
             *context.log,

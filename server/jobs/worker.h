@@ -4,6 +4,7 @@
 #include "server/jobs/example_library.h"
 #include "server/jobs/job_observer.h"
 #include "server/jobs/live_job.h"
+#include "server/jobs/preview_keeper.h"
 #include "server/jobs/running_jobs.h"
 #include "server/store/artifact_store.h"
 #include "server/store/event_log.h"
@@ -12,6 +13,7 @@
 #include <spdlog/logger.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -28,6 +30,7 @@ struct WorkerContext {
     ArtifactStore& artifacts;
     ExampleLibrary& examples;
     LiveJobs& live;
+    PreviewKeeper& previews;
     RunningJobs& running;
     Preparations& preparations;
     const proto::RequestLimits& limits;
@@ -39,7 +42,12 @@ struct WorkerContext {
 // the artifacts, ends the job. A job that was begun before goes on from its checkpoint; since
 // solving is deterministic nothing is appended until it passes what the log already holds, and
 // what is solved again must equal what was logged. `threads`: how many may solve, this one
-// included; they change no result. Throws nothing.
-void run_claim(const WorkerContext& context, const Claim& claim, std::uint32_t threads = 1);
+// included; they change no result. `on_lingering`: see RunningJobs::Entry. Throws nothing.
+void run_claim(
+    const WorkerContext& context,
+    const Claim& claim,
+    std::uint32_t threads = 1,
+    std::function<void()> on_lingering = [] {}
+);
 
 }  // namespace modelsynth::server

@@ -84,7 +84,8 @@ class JobStore {
     [[nodiscard]] virtual Stored<std::optional<JobCheckpoint>> checkpoint(const std::string& id
     ) = 0;
 
-    // Adds an artifact to a finished job; one of that name stays.
+    // Adds an artifact to a finished job; one of that name stays. A preview takes the place of the
+    // checkpoint.
     [[nodiscard]] virtual Stored<void> link(const std::string& id, const ArtifactLink& link) = 0;
 
     // Takes the artifacts and checkpoints of jobs that expired before `now`.

@@ -66,6 +66,9 @@ BlockResult BoxSearch::modify(
         return on_grid_.modify(part_of(box), model, inner, key, stop);
     }
     const GraphPart part = problem_.symmetries->close(box);
+    if (stop.stop_requested()) {
+        return {BlockOutcome::kStopped};  // that may take long for a large box
+    }
     const std::vector<Site> order = scan_images_last(problem_.size, box, scan, part);
     inner.scan = order;
     if (options.pin) {

@@ -118,6 +118,10 @@ std::optional<JobCheckpoint> find_checkpoint(Database& database, const std::stri
         row.natural(0), static_cast<std::uint32_t>(row.natural(1)), row.text(2), row.blob(3)};
 }
 
+void drop_checkpoint(Database& database, const std::string& id) {
+    database.prepare("DELETE FROM checkpoint WHERE job_id = ?").bind(std::string_view(id)).run();
+}
+
 bool is_digest_used(Database& database, const std::string& digest) {
     Statement row = database.prepare(
         "SELECT EXISTS (SELECT 1 FROM job_artifact WHERE digest = ?1) OR "

@@ -53,6 +53,7 @@ inline constexpr const char* kLevel =
 [[nodiscard]] std::optional<JobCheckpoint> find_checkpoint(
     Database& database, const std::string& id
 );
+void drop_checkpoint(Database& database, const std::string& id);
 
 // Whether a job or an example needs the artifact.
 [[nodiscard]] bool is_digest_used(Database& database, const std::string& digest);

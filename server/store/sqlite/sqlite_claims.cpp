@@ -33,10 +33,6 @@ void keep_checkpoint(
         .run();
 }
 
-void drop_checkpoint(Database& database, const std::string& id) {
-    database.prepare("DELETE FROM checkpoint WHERE job_id = ?").bind(std::string_view(id)).run();
-}
-
 // Whose turn it is now, and that the job's flow had one.
 void keep_turn(Database& database, const std::string& id, UnixMillis now) {
     database

@@ -1,5 +1,6 @@
 // What clients ask of the embedded store: jobs in, jobs out.
 
+#include "server/store/artifact_names.h"
 #include "server/store/sqlite/job_rows.h"
 #include "server/store/sqlite/sqlite_store.h"
 
@@ -281,12 +282,17 @@ Stored<std::optional<JobCheckpoint>> SqliteStore::checkpoint(const std::string& 
 
 Stored<void> SqliteStore::link(const std::string& id, const ArtifactLink& link) {
     return writer_->call<void>([&](Database& database) -> Stored<void> {
-        Statement row = database.prepare("SELECT 1 FROM job WHERE id = ?");
+        Statement row = database.prepare("SELECT state FROM job WHERE id = ?");
         row.bind(std::string_view(id));
         if (!row.step()) {
             return no_job(id);
         }
-        return link_artifacts(database, id, {link});
+        auto linked = link_artifacts(database, id, {link});
+        if (linked && link.name == kPreviewArtifact &&
+            proto::is_ended(static_cast<JobState>(row.integer(0)))) {
+            drop_checkpoint(database, id);  // the preview tells more
+        }
+        return linked;
     });
 }
 

@@ -272,6 +272,9 @@ Stored<void> StoreModel::link(const std::string& id, const ArtifactLink& link) {
                 return failure(StoreErrorCode::kConflict);
             }
             row.artifacts.insert({link.name, link.digest});
+            if (link.name == "preview" && proto::is_ended(row.job.state)) {
+                row.checkpoint.reset();
+            }
             return {};
         }
     }

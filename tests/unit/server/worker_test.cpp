@@ -50,12 +50,11 @@ class WorkerOnAnEarlierLog : public testing::Test {
              store_.artifacts(),
              examples_,
              live_,
+             previews_,
              running_,
              preparations_,
              limits_,
-             std::make_shared<spdlog::logger>(
-                 "none", std::make_shared<spdlog::sinks::null_sink_mt>()
-             ),
+             log_,
              observer_},
             claim
         );
@@ -121,6 +120,9 @@ class WorkerOnAnEarlierLog : public testing::Test {
     proto::RequestLimits limits_;
     ExampleLibrary examples_{store_.examples(), store_.artifacts(), limits_, 10};
     LiveJobs live_;
+    std::shared_ptr<spdlog::logger> log_ =
+        std::make_shared<spdlog::logger>("none", std::make_shared<spdlog::sinks::null_sink_mt>());
+    PreviewKeeper previews_{store_.jobs(), store_.artifacts(), live_, log_};
     RunningJobs running_;
     Preparations preparations_;
 };
