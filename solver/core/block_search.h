@@ -77,6 +77,9 @@ struct BlockOptions {
     // After all attempts, which may be none, CaDiCaL is asked, when there is neither board nor
     // judge; none: it is not.
     std::optional<SatLimits> by_sat = std::nullopt;
+    // The model before the first block, by site of the whole: where it still stands around many
+    // parts, what follows from it is kept for them. It changes no result. Empty: nothing is known.
+    std::span<const Label> usual = {};
 };
 
 // How an attempt at a block goes about it.
@@ -229,7 +232,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     bool is_determined(const Part& part, std::span<const Label> model, const std::stop_token& stop)
         override {
         prepare(part.inner());
-        if (surroundings(part, model, stop) != Propagation::kConsistent) {
+        if (surroundings(part, model, {}, stop) != Propagation::kConsistent) {
             return true;
         }
         for (std::size_t site = 0; site < catalog_->site_count(); ++site) {
@@ -242,6 +245,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
 
   private:
     using Inner = typename Part::Inner;
+
+    static constexpr std::uint32_t kAllGroups = (std::uint32_t{1} << Part::kOutwardGroups) - 1;
 
     BlockResult attempt(
         const Part& part,
@@ -256,7 +261,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         });
         prepare(part.inner());
         BlockResult result;
-        Propagation propagation = surroundings(part, model, stop);
+        Propagation propagation = surroundings(part, model, options.usual, stop);
         if (options.pin && propagation == Propagation::kConsistent) {
             propagation = put(*options.pin, stop);
         }
@@ -353,23 +358,87 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
 
     // Everything the sites may be by themselves, less what the labels outside forbid.
     Propagation surroundings(
-        const Part& part, std::span<const Label> model, const std::stop_token& stop
+        const Part& part,
+        std::span<const Label> model,
+        std::span<const Label> usual,
+        const std::stop_token& stop
     ) {
-        Propagation propagation = base(part, stop);
-        if (propagation != Propagation::kConsistent) {
-            return propagation;
+        key_.domains.resize(catalog_->site_count());
+        part.for_each_run([&](Site inside, Site whole, std::size_t count) {
+            domains_.copy_numbers(whole, std::span(key_.domains).subspan(inside, count));
+        });
+        if (usual_groups(part, model, usual) != 0) {
+            if (const auto kept = bases_->find(*topology_, key_)) {
+                catalog_->restore(kept->sets);
+                return narrow(part, model, kAllGroups & ~key_.groups, stop);
+            }
+            if (bases_->is_asked_again(key_)) {
+                make_wide_base(part, model, stop);
+            }
         }
+        const Propagation propagation = base(part, stop);
+        return propagation == Propagation::kConsistent ? narrow(part, model, kAllGroups, stop)
+                                                       : propagation;
+    }
+
+    // Leaves what the labels outside allow along arcs of the groups.
+    Propagation narrow(
+        const Part& part,
+        std::span<const Label> model,
+        std::uint32_t groups,
+        const std::stop_token& stop
+    ) {
         bool consistent = true;
-        part.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
+        const auto look = [&](Site inside, Site outside, RelationId relation) {
             const Label label = model[outside];
             if (consistent && label != kNoLabel) {
                 const RelationId inward = relations_.reverse(relation);
                 consistent = catalog_->narrow(inside, relations_.row(inward, label).data());
             }
-        });
-        propagation = consistent ? catalog_->propagate(stop) : Propagation::kContradiction;
+        };
+        for (std::size_t group = 0; group < Part::kOutwardGroups; ++group) {
+            if ((groups >> group & 1) != 0) {
+                part.for_each_outward_arc(group, look);
+            }
+        }
+        const Propagation propagation =
+            consistent ? catalog_->propagate(stop) : Propagation::kContradiction;
         impossible_ = catalog_->emptied_site();
         return propagation;
+    }
+
+    // The groups of outward arcs at all of whose far ends stands what usually does.
+    std::uint32_t usual_groups(
+        const Part& part, std::span<const Label> model, std::span<const Label> usual
+    ) {
+        key_.groups = 0;
+        key_.outside.clear();
+        const std::size_t groups = bases_ == nullptr || usual.empty() ? 0 : Part::kOutwardGroups;
+        for (std::size_t group = 0; group < groups; ++group) {
+            const std::size_t before = key_.outside.size();
+            bool is_usual = true;
+            part.for_each_outward_arc(group, [&](Site, Site outside, RelationId) {
+                const Label label = model[outside];
+                is_usual = is_usual && label == usual[outside];
+                key_.outside.push_back(label);
+            });
+            if (is_usual && key_.outside.size() > before) {
+                key_.groups |= std::uint32_t{1} << group;
+            } else {
+                key_.outside.resize(before);
+            }
+        }
+        return key_.groups;
+    }
+
+    // For parts to come, with what key_ says of the outside.
+    void make_wide_base(
+        const Part& part, std::span<const Label> model, const std::stop_token& stop
+    ) {
+        if (base(part, stop) == Propagation::kConsistent &&
+            narrow(part, model, key_.groups, stop) == Propagation::kConsistent) {
+            keep_base(key_);
+        }
     }
 
     Propagation put(const Pin& pin, const std::stop_token& stop) {
@@ -380,13 +449,10 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
 
     // What the sites may be by themselves.
     Propagation base(const Part& part, const std::stop_token& stop) {
-        numbers_.resize(catalog_->site_count());
-        part.for_each_run([&](Site inside, Site whole, std::size_t count) {
-            domains_.copy_numbers(whole, std::span(numbers_).subspan(inside, count));
-        });
+        const typename Bases::Key key = {0, {}, key_.domains};
         if (bases_ != nullptr) {
-            if (const auto known = bases_->find(*topology_, numbers_)) {
-                catalog_->restore(known->sets);
+            if (const auto kept = bases_->find(*topology_, key)) {
+                catalog_->restore(kept->sets);
                 return Propagation::kConsistent;
             }
         }
@@ -408,10 +474,15 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         const Propagation propagation = catalog_->propagate(stop);
         impossible_ = catalog_->emptied_site();
         if (bases_ != nullptr && propagation == Propagation::kConsistent) {
-            std::copy(catalog_->all_labels().begin(), catalog_->all_labels().end(), sets.begin());
-            bases_->keep({*topology_, numbers_, std::move(sets)});
+            keep_base(key);
         }
         return propagation;
+    }
+
+    // The catalog as it is.
+    void keep_base(const typename Bases::Key& key) {
+        const std::span<const Word> all = catalog_->all_labels();
+        bases_->keep({*topology_, key, {all.begin(), all.end()}});
     }
 
     SearchOutcome run(
@@ -478,7 +549,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     Bases* bases_;
     std::unique_ptr<const Inner> topology_;
     std::optional<Catalog<Inner, kWords>> catalog_;  // of topology_
-    std::vector<std::uint16_t> numbers_;             // of the sites' domains
+    typename Bases::Key key_;                        // of the part's base
     std::vector<std::uint16_t> weight_numbers_;      // of the sites' weights; empty: all the same
     std::vector<Word> start_;                        // what the surroundings leave
     std::vector<Label> before_;                      // the part's labels, while they are judged

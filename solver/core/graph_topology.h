@@ -58,6 +58,7 @@ class GraphTopology {
 class GraphPart {
   public:
     using Inner = GraphTopology;
+    static constexpr std::size_t kOutwardGroups = 1;
 
     struct OutwardArc {
         Site inside = 0;
@@ -90,6 +91,11 @@ class GraphPart {
         for (const OutwardArc& arc : outward_) {
             visit(arc.inside, arc.outside, arc.relation);
         }
+    }
+
+    template <class Visit>
+    void for_each_outward_arc(std::size_t /*group*/, Visit visit) const {
+        for_each_outward_arc(visit);
     }
 
   private:

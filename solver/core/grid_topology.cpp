@@ -99,6 +99,21 @@ void GridPart::move_to(const Box& box) {
 
 Box GridPart::face(std::size_t direction) const { return face_of(box_, direction); }
 
+Box GridPart::half_face(std::size_t group) const {
+    Box half = face(group / 2);
+    const bool is_second = group % 2 != 0;
+    const auto halve = [is_second](std::int32_t& min, std::int32_t& max) {
+        (is_second ? min : max) = min + (max - min) / 2;
+    };
+    const bool is_along_z = group / 2 / 2 == 0;
+    if (is_along_z) {
+        halve(half.min.z, half.max.z);
+    } else {
+        halve(half.min.x, half.max.x);
+    }
+    return half;
+}
+
 bool GridPart::has_outside(std::size_t direction, Cell& offset) const {
     const std::size_t axis = direction / 2;
     const bool positive = direction % 2 == 0;

@@ -86,6 +86,7 @@ class GridTopology {
 class GridPart {
   public:
     using Inner = GridTopology;
+    static constexpr std::size_t kOutwardGroups = 2 * kDirectionCount;
 
     // Requires: box inside size and not empty (checked).
     GridPart(const GridSize& size, Periodic periodic, const Box& box);
@@ -115,25 +116,39 @@ class GridPart {
     template <class Visit>
     void for_each_outward_arc(Visit visit) const {
         for (std::size_t direction = 0; direction < kDirectionCount; ++direction) {
-            Cell beyond;
-            if (!has_outside(direction, beyond)) {
-                continue;
-            }
-            for_each_row(face(direction), [&](const Cell& first, std::size_t count) {
-                auto inside = static_cast<Site>(inner_.size().index(
-                    {first.x - box_.min.x, first.y - box_.min.y, first.z - box_.min.z}
-                ));
-                auto outside = static_cast<Site>(
-                    size_.index({first.x + beyond.x, first.y + beyond.y, first.z + beyond.z})
-                );
-                for (const Site end = inside + static_cast<Site>(count); inside != end;) {
-                    visit(inside++, outside++, static_cast<RelationId>(direction));
-                }
-            });
+            for_each_arc_through(direction, face(direction), visit);
         }
     }
 
+    // Groups 2d and 2d + 1 are the two halves of the face in direction d: those that lie to the
+    // north and south, or, where there are none, to the west and east.
+    template <class Visit>
+    void for_each_outward_arc(std::size_t group, Visit visit) const {
+        for_each_arc_through(group / 2, half_face(group), visit);
+    }
+
   private:
+    // The outward arcs of the cells, which lie at that face.
+    template <class Visit>
+    void for_each_arc_through(std::size_t direction, const Box& cells, Visit visit) const {
+        Cell beyond;
+        if (!has_outside(direction, beyond)) {
+            return;
+        }
+        for_each_row(cells, [&](const Cell& first, std::size_t count) {
+            auto inside = static_cast<Site>(inner_.size().index(
+                {first.x - box_.min.x, first.y - box_.min.y, first.z - box_.min.z}
+            ));
+            auto outside = static_cast<Site>(
+                size_.index({first.x + beyond.x, first.y + beyond.y, first.z + beyond.z})
+            );
+            for (const Site end = inside + static_cast<Site>(count); inside != end;) {
+                visit(inside++, outside++, static_cast<RelationId>(direction));
+            }
+        });
+    }
+
+    [[nodiscard]] Box half_face(std::size_t group) const;
     // The layer of the box's cells on the side of the direction.
     [[nodiscard]] Box face(std::size_t direction) const;
     // Whether cells of the whole lie beyond that face, and how far from the face's cells.

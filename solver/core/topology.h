@@ -45,8 +45,9 @@ concept SteppedTopology = Topology<T> &&(T::kRelationCount > 0) && requires(cons
 // global(site) is the site's number in the whole. for_each_run(visit) calls visit(Site inside, Site
 // in_the_whole, std::size_t count) for all sites in rising order, each time for some that follow
 // each other both inside and in the whole. for_each_outward_arc(visit) calls visit(Site inside,
-// Site outside_in_the_whole, RelationId seen_from_inside). Two inner topologies are equal when they
-// have the same sites and arcs.
+// Site outside_in_the_whole, RelationId seen_from_inside); for_each_outward_arc(group, visit) does
+// so for one of kOutwardGroups groups of them, of which each arc is in one. Two inner topologies
+// are equal when they have the same sites and arcs.
 template <class T>
 concept TopologyPart = Topology<typename T::Inner> && std::equality_comparable<typename T::Inner> &&
     requires(
@@ -59,6 +60,8 @@ concept TopologyPart = Topology<typename T::Inner> && std::equality_comparable<t
     { part.global(site) } -> std::convertible_to<Site>;
     part.for_each_run(visit_run);
     part.for_each_outward_arc(visit);
+    { T::kOutwardGroups } -> std::convertible_to<std::size_t>;
+    part.for_each_outward_arc(std::size_t{}, visit);
 };
 
 // Calls visit(Site inside, Site in_the_whole) for every site of the part, in rising order.

@@ -83,6 +83,7 @@ BlockResult BlockSolver::attempt(
     BoxOptions options = {attempts, preparation_.order(), board_.get()};
     options.chooser = preparation_.problem().chooser.get();
     options.dead_ends = dead_ends;
+    options.usual = usual_;
     return search_->modify(block, labels, options, {seed_, index, 0, 0}, stop_);
 }
 

@@ -43,6 +43,10 @@ class BlockSolver {
     // member rules where it is complete.
     void begin(std::span<const Label> labels);
 
+    // The model before the first block, see BlockOptions::usual.
+    // Requires: it outlives the solver or the next call.
+    void expect(std::span<const Label> usual) { usual_ = usual; }
+
     // As BoxSearch::modify(), under the member rules once begin() was called: attempts alone.
     [[nodiscard]] BlockResult attempt(
         std::span<Label> labels,
@@ -76,6 +80,7 @@ class BlockSolver {
     Preparation& preparation_;
     std::uint64_t seed_;
     std::stop_token stop_;
+    std::span<const Label> usual_;
     std::unique_ptr<BoxSearch> search_;
     std::unique_ptr<ConstraintBoard> board_;  // null: the problem has no member rules
 };

@@ -57,6 +57,7 @@ BlockResult BoxSearch::modify(
     inner.chooser = options.chooser;
     inner.dead_ends = options.dead_ends;
     inner.by_sat = options.by_sat;
+    inner.usual = options.usual;
     if (!on_graph_) {
         if (options.pin) {
             const Cell cell = options.pin->cell;

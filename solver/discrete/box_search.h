@@ -32,6 +32,7 @@ struct BoxOptions {
     // As of BlockOptions, for the whole alone: by cell of it.
     std::span<std::uint32_t> dead_ends = {};
     std::optional<SatLimits> by_sat = std::nullopt;  // as of BlockOptions
+    std::span<const Label> usual = {};               // as of BlockOptions
 };
 
 // Makes boxes of a problem's models anew, whatever else has to change with them: the images of

@@ -52,6 +52,7 @@ bool modify_in_parallel(
             [&](std::uint32_t block) { return solve(own, block); },
             [&]() -> Parallel::Solver {
                 auto solver = std::make_shared<BlockSolver>(preparation, seed, stop);
+                solver->expect(blocks.usual);
                 return [&solve, solver](std::uint32_t block) { return solve(*solver, block); };
             },
             [&](std::uint32_t /*block*/, const Solved& solved) {

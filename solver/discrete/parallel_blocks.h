@@ -16,6 +16,7 @@ struct BlocksToModify {
     std::uint32_t first = 0;  // those before it are done
     std::uint32_t attempts = 1;
     std::uint32_t threads = 2;
+    std::span<const Label> usual = {};  // as of BlockSolver::expect()
 };
 
 // Modifies blocks that do not meet at the same time, in a copy of the model that is ahead of what

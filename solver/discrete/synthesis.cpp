@@ -57,10 +57,11 @@ class Run {
             go_on_from(*from, schedule->size());
         }
         solver_.begin(labels_);
+        solver_.expect(*initial->labels);
         metropolis_.start(labels_);
         blocks_total_ = static_cast<std::uint32_t>(schedule->size());
         observer_.on_start(blocks_total_, labels_);
-        if (!modify_all(*schedule, blocks.attempts, threads)) {
+        if (!modify_all(*schedule, *initial->labels, blocks.attempts, threads)) {
             return tl::unexpected(cancelled());
         }
         return finish(initial->is_searched ? 1 : changed_from(*initial->labels));
@@ -141,7 +142,12 @@ class Run {
     }
 
     // False when it was stopped; so is that below.
-    bool modify_all(std::span<const Box> schedule, std::uint32_t attempts, std::uint32_t threads) {
+    bool modify_all(
+        std::span<const Box> schedule,
+        std::span<const Label> usual,
+        std::uint32_t attempts,
+        std::uint32_t threads
+    ) {
         // What speaks of the whole makes a block depend on all before it.
         const bool is_local = problem_.member_rules.empty() && problem_.symmetries == nullptr &&
                               !metropolis_.is_asked_for();
@@ -152,7 +158,7 @@ class Run {
             preparation_,
             solver_,
             seed_,
-            {schedule, block_index_, attempts, threads},
+            {schedule, block_index_, attempts, threads, usual},
             labels_,
             stop_,
             [this](const ModifiedBlock& block) { report(block.changed, block.result); }

@@ -194,6 +194,17 @@ TEST(GridPart, TogetherWithItsOutwardArcsHasEveryArcOfTheWhole) {
         part.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
             found.insert({part.global(inside), outside, relation});
         });
+        std::multiset<Arc> in_all;
+        std::multiset<Arc> in_groups;
+        part.for_each_outward_arc([&](Site inside, Site outside, RelationId relation) {
+            in_all.insert({inside, outside, relation});
+        });
+        for (std::size_t group = 0; group < GridPart::kOutwardGroups; ++group) {
+            part.for_each_outward_arc(group, [&](Site inside, Site outside, RelationId relation) {
+                in_groups.insert({inside, outside, relation});
+            });
+        }
+        EXPECT_EQ(in_groups, in_all);
         std::multiset<Arc> expected;
         for (Site site = 0; site < whole.site_count(); ++site) {
             if (box.contains(size.cell(site))) {
@@ -353,6 +364,56 @@ TEST(BlockSearch, KnowledgeKeptFromBlockToBlockChangesNoResult) {
         EXPECT_EQ(with, without) << index;
     }
     EXPECT_NE(with, std::vector<Label>(size.cell_count(), 3));
+
+    // Block after block, as of a schedule: what stands to the east and south is as it was.
+    const std::vector<Label> usual(size.cell_count(), 3);
+    const std::vector<Box> schedule = *schedule_blocks(size, {{4, 3, 4}, 0.5, 2}, 1000);
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        with = without = usual;
+        for (std::uint32_t index = 0; index < schedule.size(); ++index) {
+            const GridPart part(size, {}, schedule[index]);
+            std::vector<Site> scan(part.inner().site_count());
+            std::iota(scan.begin(), scan.end(), Site{0});
+            BlockOptions options = {4, Order::kScan, scan};
+            options.usual = usual;
+            const RandomKey key = {seed, index, 0, 0};
+            const BlockResult kept = keeping.modify(part, with, options, key, {});
+            BlockSearch<GridPart> forgetful(relations, domains, weights);
+            const BlockResult made = forgetful.modify(part, without, options, key, {});
+            EXPECT_EQ(kept.outcome, made.outcome);
+            EXPECT_EQ(kept.attempts, made.attempts);
+            EXPECT_EQ(with, without) << seed << ' ' << index;
+        }
+    }
+}
+
+TEST(BlockBases, KnowWhatTheyCameOf) {
+    const GridTopology topology({2, 1, 2}, {});
+    using Bases = BlockBases<GridTopology>;
+    Bases bases;
+    const Bases::Key key = {5, {1, 2, 3}, {0, 0, 1, 0}};
+    EXPECT_FALSE(bases.is_asked_again(key));
+    EXPECT_TRUE(bases.is_asked_again(key));
+    EXPECT_EQ(bases.find(topology, key), nullptr);
+    bases.keep({topology, key, {7}});
+    ASSERT_NE(bases.find(topology, key), nullptr);
+    EXPECT_EQ(bases.find(topology, key)->sets, std::vector<Word>{7});
+    for (const Bases::Key& other :
+         {Bases::Key{4, {1, 2, 3}, {0, 0, 1, 0}},
+          Bases::Key{5, {1, 3, 2}, {0, 0, 1, 0}},
+          Bases::Key{5, {1, 2, 3}, {0, 1, 0, 0}},
+          Bases::Key{0, {}, {0, 0, 1, 0}}}) {
+        EXPECT_EQ(bases.find(topology, other), nullptr);
+        EXPECT_FALSE(bases.is_asked_again(other));
+    }
+    EXPECT_EQ(bases.find(GridTopology({4, 1, 1}, {}), key), nullptr);
+    // Of more than there is memory for, the oldest go.
+    const std::vector<Word> half(std::size_t{1} << 19);
+    bases.keep({topology, {1, {}, {}}, half});
+    EXPECT_NE(bases.find(topology, key), nullptr);
+    bases.keep({topology, {2, {}, {}}, half});
+    EXPECT_EQ(bases.find(topology, key), nullptr);
+    EXPECT_NE(bases.find(topology, {2, {}, {}}), nullptr);
 }
 
 TEST(LabelSet, GroupsHoldTheLabelsOfTheSet) {
