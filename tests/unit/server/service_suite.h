@@ -67,12 +67,9 @@ inline std::shared_ptr<spdlog::logger> no_log() {
 }
 
 // The id of the job, or the type of the problem.
-inline std::string submit(
-    JobService& service, const std::string& size, const std::string& more = ""
-) {
+inline std::string submit(JobService& service, const std::string& size) {
     auto submitted = service.submit(
-        R"({"solver":"discrete","example":"castle","seed":7,"parameters":{"size":)" + size + "}" +
-            more + "}",
+        R"({"solver":"discrete","example":"castle","seed":7,"parameters":{"size":)" + size + "}}",
         "",
         {},
         ""

@@ -5,6 +5,7 @@
 #include "tests/unit/server/service_suite.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace modelsynth::server {
 namespace {
@@ -82,7 +83,7 @@ TEST_F(LingeringJob, PassesItsPlaceOn) {
     EXPECT_TRUE(eventually([&] { return is_ended(service, behind); }));
     EXPECT_EQ(state_of(service, behind), proto::JobState::kSucceeded);
     EXPECT_EQ(state_of(service, id), proto::JobState::kRunning);
-    EXPECT_EQ(service.running_count(), 1U);
+    EXPECT_TRUE(eventually([&] { return service.running_count() == 1; }));
     observer_.let_go();
     EXPECT_TRUE(eventually([&] { return service.running_count() == 0; }));
     EXPECT_EQ(state_of(service, id), proto::JobState::kCancelled);
@@ -100,20 +101,25 @@ TEST_F(LingeringJob, PassesItsPlaceOnWhenItIsDeleted) {
     ASSERT_TRUE(eventually([&] { return observer_.holds.load(); }));
     EXPECT_TRUE(service.erase(id));
     EXPECT_TRUE(eventually([&] { return is_ended(service, behind); }));
-    EXPECT_EQ(service.running_count(), 1U);
+    EXPECT_TRUE(eventually([&] { return service.running_count() == 1; }));
 }
 
-TEST_F(LingeringJob, PassesItsPlaceOnAtItsDeadline) {
-    JobServiceConfig config;
-    config.workers = 1;
-    JobService& service = start(config);
-    const std::string id = submit(service, kLong, R"(,"deadline":1)");
-    const std::string behind = submit(service, kSmall);
-    EXPECT_TRUE(eventually([&] { return is_ended(service, behind); }));
-    EXPECT_EQ(state_of(service, id), proto::JobState::kRunning);
-    observer_.let_go();
-    EXPECT_TRUE(eventually([&] { return is_ended(service, id); }));
-    EXPECT_NE(service.find(id)->error.find("/problems/deadline-exceeded"), std::string::npos);
+TEST(RunningJobs, TellOnceOfWhatLingersAfterItsDeadline) {
+    RunningJobs running;
+    std::atomic<int> told = 0;
+    RunningJobs::Entry entry(running, "a", [&] { ++told; });
+    entry.set_deadline(RunningJobs::Clock::now());
+    EXPECT_TRUE(eventually([&] { return told == 1; }));
+    EXPECT_EQ(entry.reason(), StopReason::kDeadline);
+    EXPECT_TRUE(entry.token().stop_requested());
+    running.stop("a", StopReason::kCancelled);  // too late to be the reason
+    // By the time that the next one is told of, the first one has been looked at again.
+    std::atomic<bool> is_next_told = false;
+    const RunningJobs::Entry next(running, "b", [&] { is_next_told = true; });
+    running.stop("b", StopReason::kErased);
+    EXPECT_TRUE(eventually([&] { return is_next_told.load(); }));
+    EXPECT_EQ(entry.reason(), StopReason::kDeadline);
+    EXPECT_EQ(told, 1);
 }
 
 TEST_F(LingeringJob, KeepsItsMemoryUntilItIsGone) {
