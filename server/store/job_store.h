@@ -48,8 +48,9 @@ class JobStore {
     // and links to artifacts in the same one. Under another solver version than the append before,
     // the older checkpoint and models go: they are not what this solver makes. Returns at once;
     // `done` is called in order of the calls, on the store's thread, with the first seq once they
-    // are on disk. Blocks while too much waits to be written. Fails: kLeaseLost, kConflict when a
-    // digest is not stored.
+    // are on disk. Blocks while too much waits to be written. After one that failed every other of
+    // the lease fails, too, and so does finish(): a log has no gaps. Fails: kLeaseLost, kConflict
+    // when a digest is not stored.
     virtual void append(
         const Lease& lease,
         std::vector<NewEvent> events,

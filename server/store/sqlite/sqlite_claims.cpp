@@ -33,6 +33,10 @@ void keep_checkpoint(
         .run();
 }
 
+tl::unexpected<StoreError> gap_in_log() {
+    return failure(StoreErrorCode::kUnavailable, "what came before in the job's log was not kept");
+}
+
 // Whose turn it is now, and that the job's flow had one.
 void keep_turn(Database& database, const std::string& id, UnixMillis now) {
     database
@@ -146,6 +150,7 @@ Stored<std::optional<Claim>> SqliteStore::claim(UnixMillis now, const ClaimLimit
                 .bind(now)
                 .bind(std::string_view(claim->lease.job_id))
                 .run();
+            gaps_.erase(claim->lease.job_id);
             keep_turn(database, claim->lease.job_id, now);
             auto job = find_job(database, claim->lease.job_id);
             if (!job) {
@@ -168,69 +173,102 @@ void SqliteStore::append(
     writer_->post(
         {[this, lease, events = std::move(events), progress, first_seq](Database& database
          ) -> Stored<void> {
-             bool is_new_version = false;
-             {
-                 Statement row = database.prepare(
-                     "SELECT next_seq, solver_version FROM job "
-                     "WHERE id = ? AND token = ? AND state = 1"
-                 );
-                 row.bind(std::string_view(lease.job_id)).bind(lease.token);
-                 if (!row.step()) {
-                     return lease_lost(lease);
+             try {
+                 auto first = append_now(database, lease, events, progress);
+                 if (!first) {
+                     note_gap(lease, first.error().code);
+                     return tl::unexpected(std::move(first.error()));
                  }
-                 *first_seq = row.natural(0);
-                 is_new_version = row.text(1) != progress.solver_version;
+                 *first_seq = *first;
+                 return {};
+             } catch (const SqliteError&) {
+                 note_gap(lease, StoreErrorCode::kUnavailable);
+                 throw;
              }
-             if (is_new_version) {
-                 // What is known of the job's models was made by another solver and is of no use
-                 // to this one.
-                 drop_checkpoint(database, lease.job_id);
-                 unlink_artifacts(database, lease.job_id, Unlinked::kMade);
-                 database
-                     .prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
-                     .bind(std::string_view(progress.solver_version))
-                     .bind(*first_seq - 1)
-                     .bind(std::string_view(lease.job_id))
-                     .run();
-             }
-             if (progress.checkpoint) {
-                 keep_checkpoint(
-                     database, lease.job_id, *progress.checkpoint, *first_seq + events.size() - 1
-                 );
-             }
-             if (auto linked = link_artifacts(database, lease.job_id, progress.artifacts);
-                 !linked) {
-                 return linked;
-             }
-             bool has_block = false;
-             std::uint64_t next_seq = *first_seq;
-             for (const NewEvent& event : events) {
-                 insert_event(database, lease.job_id, next_seq++, event);
-                 has_block = has_block || event.type == "block";
-             }
-             database
-                 .prepare(
-                     "UPDATE job SET next_seq = ?, blocks_done = ?, blocks_total = ?, "
-                     "solved_seconds = ?, fruitless_claims = CASE WHEN ? THEN 0 ELSE "
-                     "fruitless_claims END WHERE id = ?"
-                 )
-                 .bind(next_seq)
-                 .bind(std::uint64_t{progress.blocks_done})
-                 .bind(std::uint64_t{progress.blocks_total})
-                 .bind(progress.solved_seconds)
-                 .bind(std::int64_t{has_block})
-                 .bind(std::string_view(lease.job_id))
-                 .run();
-             return {};
          },
-         [first_seq, done = std::move(done)](const Stored<void>& committed) {
+         [this, lease, first_seq, done = std::move(done)](const Stored<void>& committed) {
              if (committed) {
                  done(*first_seq);
              } else {
+                 note_gap(lease, committed.error().code);
                  done(tl::unexpected(committed.error()));
              }
          }}
     );
+}
+
+void SqliteStore::note_gap(const Lease& lease, StoreErrorCode code) {
+    // After the end of the store there is no writer's thread, and nothing to append to.
+    if (code != StoreErrorCode::kLeaseLost && code != StoreErrorCode::kClosed) {
+        gaps_[lease.job_id] = lease.token;
+    }
+}
+
+bool SqliteStore::has_gap(const Lease& lease) const {
+    const auto found = gaps_.find(lease.job_id);
+    return found != gaps_.end() && found->second == lease.token;
+}
+
+Stored<std::uint64_t> SqliteStore::append_now(
+    Database& database,
+    const Lease& lease,
+    const std::vector<NewEvent>& events,
+    const Progress& progress
+) {
+    std::uint64_t first_seq = 0;
+    bool is_new_version = false;
+    {
+        Statement row = database.prepare(
+            "SELECT next_seq, solver_version FROM job WHERE id = ? AND token = ? AND state = 1"
+        );
+        row.bind(std::string_view(lease.job_id)).bind(lease.token);
+        if (!row.step()) {
+            return lease_lost(lease);
+        }
+        if (has_gap(lease)) {
+            return gap_in_log();
+        }
+        first_seq = row.natural(0);
+        is_new_version = row.text(1) != progress.solver_version;
+    }
+    if (is_new_version) {
+        // What is known of the job's models was made by another solver and is of no use to this
+        // one.
+        drop_checkpoint(database, lease.job_id);
+        unlink_artifacts(database, lease.job_id, Unlinked::kMade);
+        database.prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
+            .bind(std::string_view(progress.solver_version))
+            .bind(first_seq - 1)
+            .bind(std::string_view(lease.job_id))
+            .run();
+    }
+    if (progress.checkpoint) {
+        keep_checkpoint(
+            database, lease.job_id, *progress.checkpoint, first_seq + events.size() - 1
+        );
+    }
+    if (auto linked = link_artifacts(database, lease.job_id, progress.artifacts); !linked) {
+        return tl::unexpected(std::move(linked.error()));
+    }
+    bool has_block = false;
+    std::uint64_t next_seq = first_seq;
+    for (const NewEvent& event : events) {
+        insert_event(database, lease.job_id, next_seq++, event);
+        has_block = has_block || event.type == "block";
+    }
+    database
+        .prepare(
+            "UPDATE job SET next_seq = ?, blocks_done = ?, blocks_total = ?, solved_seconds = ?, "
+            "fruitless_claims = CASE WHEN ? THEN 0 ELSE fruitless_claims END WHERE id = ?"
+        )
+        .bind(next_seq)
+        .bind(std::uint64_t{progress.blocks_done})
+        .bind(std::uint64_t{progress.blocks_total})
+        .bind(progress.solved_seconds)
+        .bind(std::int64_t{has_block})
+        .bind(std::string_view(lease.job_id))
+        .run();
+    return first_seq;
 }
 
 Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
@@ -250,6 +288,9 @@ Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {
             }
             if (state != JobState::kRunning) {
                 return lease_lost(lease);
+            }
+            if (has_gap(lease)) {
+                return gap_in_log();
             }
             cancel_requested = row.integer(2) != 0;
         }

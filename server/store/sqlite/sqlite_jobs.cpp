@@ -256,6 +256,7 @@ Stored<void> SqliteStore::erase(const std::string& id) {
         if (database.changes() == 0) {
             return no_job(id);
         }
+        gaps_.erase(id);
         touch(id, News::kEnd);
         return {};
     });

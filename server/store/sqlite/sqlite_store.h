@@ -124,6 +124,16 @@ class SqliteStore final : public JobStore,
     // What the webhook of a job that has just ended is to be sent, if it has one.
     void add_delivery(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
+    // Fails: as append().
+    Stored<std::uint64_t> append_now(
+        Database& database,
+        const Lease& lease,
+        const std::vector<NewEvent>& events,
+        const Progress& progress
+    );
+    // An append failed with that.
+    void note_gap(const Lease& lease, StoreErrorCode code);
+    [[nodiscard]] bool has_gap(const Lease& lease) const;
     // With a number that the caller counts on from.
     void insert_event(
         Database& database, const std::string& id, std::uint64_t seq, const NewEvent& event
@@ -171,6 +181,8 @@ class SqliteStore final : public JobStore,
     std::map<std::string, News> touched_;        // jobs whose listeners are told after the commit
     std::vector<std::string> unlinked_digests_;  // files to look at after the commit
     bool has_new_deliveries_ = false;            // told of after the commit
+    // Jobs with the token of a lease that one of its appends failed for.
+    std::map<std::string, std::uint64_t> gaps_;
 
     std::mutex readers_mutex_;
     std::vector<std::unique_ptr<Database>> idle_readers_;

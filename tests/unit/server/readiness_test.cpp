@@ -105,7 +105,7 @@ TEST(ReadinessOnAFaultyDisk, AJobThatWasCutOffGoesOnWhenTheDiskHasRoomAgain) {
     EXPECT_EQ(service.find(id)->state, proto::JobState::kRunning);
     disk.heal();
     EXPECT_TRUE(eventually([&] { return proto::is_ended(service.find(id)->state); }));
-    EXPECT_EQ(service.find(id)->state, proto::JobState::kSucceeded);
+    EXPECT_EQ(service.find(id)->state, proto::JobState::kSucceeded) << service.find(id)->error;
 }
 
 }  // namespace

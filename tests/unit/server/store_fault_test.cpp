@@ -260,6 +260,31 @@ TEST(StoreDiskFaults, AJobThatCannotBeWrittenIsNotThere) {
     EXPECT_EQ(submitted.job.queue_position, 1U);
 }
 
+TEST(StoreDiskFaults, ALogHasNoGapWhereAnAppendFailed) {
+    const TemporaryDirectory directory;
+    FaultyVfs disk;
+    const auto store = value(SqliteStore::open(directory.path(), kRetentionMs));
+    value(store->submit(new_job("a"), kNoLimit));
+    const Lease lease = value(store->claim(kNow, {}))->lease;
+    value(append(*store, lease, {block_event(0)}));
+    disk.fail(FaultyVfs::Call::kWrite, 1, SQLITE_FULL, kForLong);
+    EXPECT_EQ(error_of(append(*store, lease, {block_event(1)})), StoreErrorCode::kUnavailable);
+    disk.heal();
+    // The disk takes them again, but one is missing before them.
+    EXPECT_EQ(error_of(append(*store, lease, {block_event(2)})), StoreErrorCode::kUnavailable);
+    EXPECT_EQ(error_of(store->finish(lease, succeeded())), StoreErrorCode::kUnavailable);
+    EXPECT_EQ(whole_log(*store, "a").size(), 2U);
+    value(store->release(lease, 0));
+    EXPECT_EQ(error_of(append(*store, lease, {block_event(2)})), StoreErrorCode::kLeaseLost);
+    // Who takes it up again begins where the log ends.
+    const Claim next = *value(store->claim(kNow, {}));
+    EXPECT_EQ(next.head, 2U);
+    value(append(*store, next.lease, {block_event(1)}));
+    value(append(*store, next.lease, {block_event(2)}));
+    value(store->finish(next.lease, succeeded()));
+    EXPECT_EQ(whole_log(*store, "a").size(), 5U);
+}
+
 TEST(StoreDiskFaults, AFailureWhileLookingForFilesToRemoveEndsNothing) {
     for (std::size_t n = 1; n <= 12; ++n) {
         const TemporaryDirectory directory;

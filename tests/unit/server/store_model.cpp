@@ -136,6 +136,7 @@ std::optional<Claim> StoreModel::claim(proto::UnixMillis now, const ClaimLimits&
     turn_ = std::max(turn_, best->turn);
     served_[flow_of(best->submitted)] = now;
     best->job.state = JobState::kRunning;
+    best->has_gap = false;
     best->job.started = best->job.started.value_or(now);
     ++best->token;
     Claim claim;
@@ -160,12 +161,16 @@ Stored<std::uint64_t> StoreModel::append(
     if (row == nullptr || row->job.state != JobState::kRunning) {
         return failure(StoreErrorCode::kLeaseLost);
     }
+    if (row->has_gap) {
+        return failure(StoreErrorCode::kUnavailable);
+    }
     const bool all_stored = std::all_of(
         progress.artifacts.begin(),
         progress.artifacts.end(),
         [this](const ArtifactLink& artifact) { return stored_digests_.contains(artifact.digest); }
     );
     if (!all_stored) {
+        row->has_gap = true;
         return failure(StoreErrorCode::kConflict);
     }
     const std::uint64_t first = row->job.head + 1;
@@ -203,6 +208,9 @@ Stored<proto::Job> StoreModel::finish(const Lease& lease, const Outcome& outcome
     }
     if (proto::is_ended(row->job.state)) {
         return row->job;
+    }
+    if (row->has_gap) {
+        return failure(StoreErrorCode::kUnavailable);
     }
     const JobState state = row->cancel_requested ? JobState::kCancelled : outcome.state;
     std::map<std::string, std::string> kept;

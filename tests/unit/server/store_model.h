@@ -23,6 +23,7 @@ class StoreModel {
         bool cancel_requested = false;
         std::uint64_t token = 0;
         std::uint32_t fruitless_claims = 0;
+        bool has_gap = false;  // an append under the lease failed
         double solved_seconds = 0;
         std::string solver_version;
         std::uint64_t version_base = 0;
