@@ -274,3 +274,23 @@ def together(count, work):
 
 def compact(document):
     return json.dumps(document, separators=(",", ":")).encode()
+
+
+def check_events(events, log, after=0):
+    """That what came is the log after that event, but for what a snapshot stands for."""
+    seq = after
+    for event in events:
+        if event["type"] == "snapshot":
+            assert event["seq"] > seq
+            assert event["job"]["id"] == _log_id(log) and event["job"]["state"] == "running"
+            blocks = [each for each in log[:event["seq"]] if each["type"] == "block"]
+            assert event["job"]["progress"]["blocks_done"] == len(blocks)
+        else:
+            assert event["seq"] == seq + 1
+            assert event == log[event["seq"] - 1]
+        seq = event["seq"]
+    assert events[-1] == log[-1]
+
+
+def _log_id(log):
+    return log[-1]["result"]["model"].split("/")[3]

@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+from checks import check_events
 from conftest import Server
 from event_reader import EventReader
 from test_multi_stream import SharedStream, events_of, is_end
@@ -44,26 +45,6 @@ def read_shared(client, job):
 def resident_mib(server, field="VmRSS"):
     with open(f"/proc/{server.process.pid}/status", encoding="ascii") as status:
         return next(int(line.split()[1]) / 1024 for line in status if line.startswith(field + ":"))
-
-
-def check_lagged(events, log):
-    """That what came is the log, but for what a snapshot stands for."""
-    seq = 0
-    for event in events:
-        if event["type"] == "snapshot":
-            assert event["seq"] > seq
-            assert event["job"]["id"] == log_id(log) and event["job"]["state"] == "running"
-            blocks = [each for each in log[:event["seq"]] if each["type"] == "block"]
-            assert event["job"]["progress"]["blocks_done"] == len(blocks)
-        else:
-            assert event["seq"] == seq + 1
-            assert event == log[event["seq"] - 1]
-        seq = event["seq"]
-    assert events[-1] == log[-1]
-
-
-def log_id(log):
-    return log[-1]["result"]["model"].split("/")[3]
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +86,7 @@ def lagged():
 @pytest.mark.parametrize("carrier", ["sse", "socket", "shared"])
 def test_a_client_that_stops_reading_misses_nothing_it_is_not_told_of(lagged, carrier):
     for events in lagged[carrier]:
-        check_lagged(events, lagged["log"])
+        check_events(events, lagged["log"])
 
 
 @pytest.mark.parametrize("carrier", ["sse", "socket", "shared"])
