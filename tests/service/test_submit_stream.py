@@ -159,7 +159,7 @@ def test_a_server_that_stops_cancels_nothing(make_server):
 
 
 def test_cancelling_a_running_job_lets_the_next_one_start(make_server):
-    """How soon, tests/bench/service_bench.py measures; here it must only come about."""
+    """How soon, tests/load/cancel.py measures; here it must only come about."""
     server = make_server(workers=1)
     big = server.submit((300, 10, 300), parameters={"blocks": {"size": [20, 10, 20]}})
     wait_until(lambda: state_of(server, big) == "running")
@@ -168,6 +168,5 @@ def test_cancelling_a_running_job_lets_the_next_one_start(make_server):
         assert reader.next()["type"] == "queued"
         assert server.request("POST", f"/v1/jobs/{big['id']}/cancel").status == 200
         assert reader.rest()[-1]["type"] == "succeeded"
-    cancelled = server.get(f"/v1/jobs/{big['id']}").json()
-    assert cancelled["state"] == "cancelled"
-    assert server.get(f"/v1/jobs/{following['id']}").json()["started"] >= cancelled["finished"]
+    # It need not have waited for the end of the one before it, whose worker may linger.
+    wait_until(lambda: state_of(server, big) == "cancelled")
