@@ -59,16 +59,13 @@ bool is_ended(JobService& service, const std::string& id) {
     return proto::is_ended(state_of(service, id));
 }
 
-std::string detail_of_submit(JobService& service, const std::string& size) {
-    return service
-        .submit(
-            R"({"solver":"discrete","example":"castle","parameters":{"size":)" + size + "}}",
-            "",
-            {},
-            ""
-        )
-        .error()
-        .detail;
+// Requires: more than the service has.
+std::uint64_t bytes_needed(JobService& service, const std::string& size) {
+    const auto refused = service.submit(
+        R"({"solver":"discrete","example":"castle","parameters":{"size":)" + size + "}}", "", {}, ""
+    );
+    const std::string& detail = refused.error().detail;
+    return std::stoull(detail.substr(detail.find_first_of("0123456789")));
 }
 
 TEST_F(LingeringJob, PassesItsPlaceOn) {
@@ -126,17 +123,23 @@ TEST_F(LingeringJob, KeepsItsMemoryUntilItIsGone) {
     JobServiceConfig config;
     config.workers = 1;
     config.memory_bytes_max = 1;
-    const std::string refusal = detail_of_submit(*make_service(config), kLong);
-    // Room for it alone.
-    config.memory_bytes_max = std::stoull(refusal.substr(refusal.find_first_of("0123456789")));
+    std::uint64_t need = 0;
+    {
+        const auto service = make_service(config);
+        need = bytes_needed(*service, kLong) + bytes_needed(*service, kSmall);
+    }
+    config.memory_bytes_max = need;
     JobService& service = start(config);
     const std::string id = submit(service, kLong);
-    const std::string behind = submit(service, kSmall);
     ASSERT_TRUE(eventually([&] { return observer_.holds.load(); }));
+    const std::string large = submit(service, kLong);
+    const std::string small = submit(service, kSmall);
     EXPECT_TRUE(service.cancel(id));
+    // Its place is free, as the small one shows, but there is no room for one before that.
+    EXPECT_TRUE(eventually([&] { return is_ended(service, small); }));
+    EXPECT_EQ(state_of(service, large), proto::JobState::kQueued);
     observer_.let_go();
-    EXPECT_TRUE(eventually([&] { return is_ended(service, behind); }));
-    EXPECT_GE(service.find(behind)->started, service.find(id)->finished);
+    EXPECT_TRUE(eventually([&] { return is_ended(service, large); }));
 }
 
 using StoppedJob = ServiceSuite;
@@ -191,6 +194,10 @@ TEST_F(StoppedJob, WaitsForThePreviewsOfOthersWhenTheyAreMany) {
         ASSERT_TRUE(eventually([&] { return service->find(ids.back())->blocks_done > 0; }));
         EXPECT_TRUE(service->cancel(ids.back()));
     }
+    // The last two have ended, but their workers wait to hand the previews over.
+    EXPECT_TRUE(eventually([&] {
+        return is_ended(*service, ids.back()) && service->running_count() == 2;
+    }));
     artifacts_.let_go();
     service.reset();
     for (const std::string& id : ids) {
