@@ -2,6 +2,7 @@
 
 #include "solver/continuous/constraints/object_rules.h"
 #include "solver/continuous/domains.h"
+#include "solver/continuous/graph_part.h"
 #include "solver/continuous/initial_model.h"
 #include "solver/continuous/planes/model_planes.h"
 
@@ -124,6 +125,24 @@ void narrow_to_kept(
     }
 }
 
+// Some vertices of the kinds that most of a model has.
+GraphPart middle_of(const Arrangement& arrangement, const Symmetries* symmetries) {
+    static constexpr std::int32_t kExtent = 4;  // in cells
+    const auto range = [](std::int32_t extent) {
+        const std::int32_t length = std::min(extent, kExtent);
+        return std::pair((extent - length) / 2, (extent - length) / 2 + length);
+    };
+    const GridSize cells = arrangement.frame().cells;
+    const auto [west, east] = range(cells.x);
+    const auto [bottom, top] = range(cells.y);
+    const auto [north, south] = range(cells.z);
+    std::vector<Site> vertices;
+    arrangement.for_each_vertex({{west, bottom, north}, {east, top, south}}, [&](Site site) {
+        vertices.push_back(site);
+    });
+    return part_of(arrangement, std::move(vertices), symmetries);
+}
+
 }  // namespace
 
 Result<Problem> make_problem(
@@ -186,6 +205,12 @@ Result<Problem> make_problem(
     if (!initial) {
         return tl::unexpected(std::move(initial.error()));
     }
+    auto by_kind = KindRelations::make(
+        symmetries ? symmetries->relations() : reading->relations(),
+        domains,
+        *weights,
+        middle_of(*arrangement, symmetries.get())
+    );
     std::vector<Label> homeless = find_homeless(figures, *arrangement);
     std::vector<Connection> connections = connections_of(*reading, parameters);
     const double perturbation =
@@ -199,6 +224,7 @@ Result<Problem> make_problem(
         std::move(*arrangement),
         std::move(domains),
         std::move(*weights),
+        std::move(by_kind),
         std::move(*initial),
         std::move(is_kept),
         std::move(homeless),

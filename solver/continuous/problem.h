@@ -7,6 +7,7 @@
 #include "solver/continuous/planes/spacing.h"
 #include "solver/continuous/reading/reading.h"
 #include "solver/continuous/symmetry/symmetries.h"
+#include "solver/core/kind_relations.h"
 #include "solver/core/result.h"
 #include "solver/core/site_domains.h"
 #include "solver/core/site_weights.h"
@@ -28,6 +29,7 @@ struct Problem {
     Arrangement arrangement;
     SiteDomains domains;
     SiteWeights weights;
+    std::unique_ptr<const KindRelations> by_kind;  // of all these; null: there is none
     // Empty space, or the bare ground, or the model to start from, but for what constraints ask
     // for: consistent from the beginning, and what stands at the border of the model for good.
     std::vector<Label> initial;

@@ -95,7 +95,9 @@ class Run {
           seed_(seed),
           observer_(observer),
           stop_(stop),
-          search_(problem.relations(), problem.domains, problem.weights, &bases_),
+          search_(
+              problem.relations(), problem.domains, problem.weights, &bases_, problem.by_kind.get()
+          ),
           made_{problem.initial, {}} {
         if (!problem.connections.empty()) {
             growth_ = std::make_unique<Growth>(problem);
@@ -199,7 +201,11 @@ class Run {
                 [&](std::uint32_t block) { return solve(search_, block); },
                 [&]() -> Parallel::Solver {
                     auto search = std::make_shared<Search>(
-                        problem_.relations(), problem_.domains, problem_.weights, &bases_
+                        problem_.relations(),
+                        problem_.domains,
+                        problem_.weights,
+                        &bases_,
+                        problem_.by_kind.get()
                     );
                     return [&solve, search](std::uint32_t block) { return solve(*search, block); };
                 },

@@ -3,7 +3,9 @@
 #include "solver/core/block_bases.h"
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/growing_sets.h"
 #include "solver/core/label_chooser.h"
+#include "solver/core/part_numbering.h"
 #include "solver/core/random.h"
 #include "solver/core/sat/sat_search.h"
 #include "solver/core/search.h"
@@ -20,6 +22,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -70,8 +73,9 @@ struct BlockOptions {
     std::optional<Pin> pin = std::nullopt;
     const LabelChooser* chooser = nullptr;  // in place of the weights alone; null: none
     PartJudge* judge = nullptr;             // of every attempt that comes to its end; null: none
-    // Sites all of whose labels are of one of these sets come before all others, whatever the
-    // order: what the sets are of grows from where it was begun.
+    // What these sets are of grows from where it was begun and does not begin by itself: sites all
+    // of whose labels are of one of them come before all others, whatever the order, and elsewhere
+    // other labels are drawn as long as there are any, unless there is a chooser.
     std::span<const LabelSet> growing = {};
     std::span<std::uint32_t> dead_ends = {};  // by site of the part, as of SearchAids
     // After all attempts, which may be none, CaDiCaL is asked, when there is neither board nor
@@ -119,15 +123,25 @@ template <TopologyPart Part>
 class BlockSearch {
   public:
     using Bases = BlockBases<typename Part::Inner>;
+    using ByKind = KindedRelationsOf<typename Part::Inner>;
 
     // `bases` saves work when many parts of one problem are searched; null: nothing is kept.
+    // `by_kind`, made of the problem, makes it faster; null: there is none. It changes no result
+    // but of boxes of a grid that do not reach through all layers: these know from the beginning
+    // what can stand in theirs.
     BlockSearch(
         const Relations& relations,
         const SiteDomains& domains,
         const SiteWeights& weights,
-        Bases* bases = nullptr
+        Bases* bases = nullptr,
+        const ByKind* by_kind = nullptr
     )
-        : of_width_(make(relations, domains, weights, bases)) {}
+        : whole_(make(WholeNumbering<Part>(relations, domains, weights), bases)) {
+        if (by_kind != nullptr) {
+            by_kind_ =
+                make(KindNumbering<Part, ByKind>(*by_kind, relations, domains, weights), bases);
+        }
+    }
 
     // Makes the part anew, or leaves `model` as it was.
     // Shape:    model has a label for every site of the whole; kNoLabel outside the part means
@@ -140,7 +154,20 @@ class BlockSearch {
         const RandomKey& key,
         const std::stop_token& stop
     ) {
-        return of_width_->modify(part, model, options, key, stop);
+        // Boards, choosers and CaDiCaL know labels by their numbers in the whole.
+        if (by_kind_ == nullptr || options.board != nullptr || options.chooser != nullptr ||
+            options.attempts == 0) {
+            return whole_->modify(part, model, options, key, stop);
+        }
+        BlockResult result = by_kind_->modify(part, model, options, key, stop);
+        if (result.outcome == BlockOutcome::kReverted && options.by_sat) {
+            BlockOptions only_by_sat = options;
+            only_by_sat.attempts = 0;
+            const BlockResult by_sat = whole_->modify(part, model, only_by_sat, key, stop);
+            result.outcome = by_sat.outcome;
+            result.solved_by = by_sat.solved_by;
+        }
+        return result;
     }
 
     // Whether the surroundings leave no choice anywhere in the part (or nothing at all): to make it
@@ -148,11 +175,14 @@ class BlockSearch {
     [[nodiscard]] bool is_determined(
         const Part& part, std::span<const Label> model, const std::stop_token& stop
     ) {
-        return of_width_->is_determined(part, model, stop);
+        return whole_->is_determined(part, model, stop);
     }
 
     // Sites of the largest part so far; what memory is kept goes with it.
-    [[nodiscard]] std::size_t largest_part() const { return of_width_->largest_part; }
+    [[nodiscard]] std::size_t largest_part() const {
+        const std::size_t of_whole = whole_->largest_part;
+        return by_kind_ == nullptr ? of_whole : std::max(of_whole, by_kind_->largest_part);
+    }
 
   private:
     struct AnyWidth {
@@ -171,19 +201,16 @@ class BlockSearch {
         ) = 0;
     };
 
-    template <std::size_t kWords>
+    template <std::size_t kWords, class Numbering>
     class OfWidth;
 
-    static std::unique_ptr<AnyWidth> make(
-        const Relations& relations,
-        const SiteDomains& domains,
-        const SiteWeights& weights,
-        Bases* bases
-    ) {
+    template <class Numbering>
+    static std::unique_ptr<AnyWidth> make(Numbering numbering, Bases* bases) {
+        const std::size_t words = numbering.relations().words();
         const auto of_width = [&]<std::size_t kWords>() -> std::unique_ptr<AnyWidth> {
-            return std::make_unique<OfWidth<kWords>>(relations, domains, weights, bases);
+            return std::make_unique<OfWidth<kWords, Numbering>>(std::move(numbering), bases);
         };
-        switch (relations.words()) {
+        switch (words) {
             case 1:
                 return of_width.template operator()<1>();
             case 2:
@@ -193,25 +220,20 @@ class BlockSearch {
             case 4:
                 return of_width.template operator()<4>();
             default:
-                return of_width.template operator()<0>();
+                return of_width.template operator()<Numbering::kMoreWords>();
         }
     }
 
-    std::unique_ptr<AnyWidth> of_width_;
+    std::unique_ptr<AnyWidth> whole_;
+    std::unique_ptr<AnyWidth> by_kind_;
 };
 
 // The search with label sets of kWords words; 0: of any number.
 template <TopologyPart Part>
-template <std::size_t kWords>
+template <std::size_t kWords, class Numbering>
 class BlockSearch<Part>::OfWidth final : public AnyWidth {
   public:
-    OfWidth(
-        const Relations& relations,
-        const SiteDomains& domains,
-        const SiteWeights& weights,
-        Bases* bases
-    )
-        : relations_(relations), domains_(domains), weights_(weights), bases_(bases) {}
+    OfWidth(Numbering numbering, Bases* bases) : numbering_(std::move(numbering)), bases_(bases) {}
 
     BlockResult modify(
         const Part& part,
@@ -231,7 +253,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
 
     bool is_determined(const Part& part, std::span<const Label> model, const std::stop_token& stop)
         override {
-        prepare(part.inner());
+        prepare(part);
         if (surroundings(part, model, {}, stop) != Propagation::kConsistent) {
             return true;
         }
@@ -259,7 +281,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         part.for_each_run([&](Site, Site whole, std::size_t) {
             __builtin_prefetch(&model[whole], 1);
         });
-        prepare(part.inner());
+        prepare(part);
         BlockResult result;
         Propagation propagation = surroundings(part, model, options.usual, stop);
         if (options.pin && propagation == Propagation::kConsistent) {
@@ -283,7 +305,7 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
                 return result;
         }
         start_.assign(catalog_->all_labels().begin(), catalog_->all_labels().end());
-        number_weights(part);
+        weights_.emplace(numbering_.weights(part));
         std::optional<PartChooser> chooser;
         if (options.chooser != nullptr) {
             chooser.emplace(*options.chooser).enter(part, model);
@@ -317,8 +339,10 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         }
         result.attempts = options.attempts;
         result.outcome = BlockOutcome::kReverted;
-        if (options.by_sat && options.board == nullptr && options.judge == nullptr) {
-            ask_sat(part, model, *options.by_sat, key, stop, result);
+        if constexpr (std::is_same_v<Numbering, WholeNumbering<Part>>) {
+            if (options.by_sat && options.board == nullptr && options.judge == nullptr) {
+                ask_sat(part, model, *options.by_sat, key, stop, result);
+            }
         }
         return result;
     }
@@ -333,9 +357,15 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     ) {
         key.attempt = 0;
         std::vector<Label> labels(topology_->site_count());
-        const PartWeights weights = {weights_, weight_numbers_};
         const SatResult found = solve_by_sat(
-            *topology_, relations_, start_, weights, key, limits, stop, std::span<Label>(labels)
+            *topology_,
+            numbering_.relations(),
+            start_,
+            *weights_,
+            key,
+            limits,
+            stop,
+            std::span<Label>(labels)
         );
         if (found.outcome == SatOutcome::kStopped) {
             result.outcome = BlockOutcome::kStopped;
@@ -347,11 +377,13 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     }
 
     // The catalog for such a part; parts of one shape come one after the other.
-    void prepare(const Inner& inner) {
-        if (topology_ == nullptr || !(*topology_ == inner)) {
+    void prepare(const Part& part) {
+        const bool is_new_shape = topology_ == nullptr || !(*topology_ == part.inner());
+        numbering_.enter(part, is_new_shape);
+        if (is_new_shape) {
             catalog_.reset();
-            topology_ = std::make_unique<const Inner>(inner);
-            catalog_.emplace(*topology_, relations_);
+            topology_ = std::make_unique<const Inner>(part.inner());
+            catalog_.emplace(*topology_, numbering_.relations());
             this->largest_part = std::max(this->largest_part, topology_->site_count());
         }
     }
@@ -365,8 +397,11 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     ) {
         key_.domains.resize(catalog_->site_count());
         part.for_each_run([&](Site inside, Site whole, std::size_t count) {
-            domains_.copy_numbers(whole, std::span(key_.domains).subspan(inside, count));
+            numbering_.domains().copy_numbers(
+                whole, std::span(key_.domains).subspan(inside, count)
+            );
         });
+        numbering_.append_key(key_.domains);
         if (usual_groups(part, model, usual) != 0) {
             if (const auto kept = bases_->find(*topology_, key_)) {
                 catalog_->restore(kept->sets);
@@ -392,8 +427,8 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         const auto look = [&](Site inside, Site outside, RelationId relation) {
             const Label label = model[outside];
             if (consistent && label != kNoLabel) {
-                const RelationId inward = relations_.reverse(relation);
-                consistent = catalog_->narrow(inside, relations_.row(inward, label).data());
+                consistent =
+                    catalog_->narrow(inside, numbering_.allowed(inside, outside, relation, label));
             }
         };
         for (std::size_t group = 0; group < Part::kOutwardGroups; ++group) {
@@ -442,7 +477,9 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     }
 
     Propagation put(const Pin& pin, const std::stop_token& stop) {
-        const bool fits = catalog_->narrow(pin.inside, pin.labels->words().data());
+        std::vector<Word> labels(catalog_->words());
+        numbering_.put_numbered(pin.inside, pin.labels->words(), labels.data());
+        const bool fits = catalog_->narrow(pin.inside, labels.data());
         impossible_ = pin.inside;
         return fits ? catalog_->propagate(stop) : Propagation::kContradiction;
     }
@@ -459,12 +496,13 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         std::vector<Word> sets(catalog_->all_labels().size());
         bool any_empty = false;
         for_each_site(part, [&](Site inside, Site whole) {
-            const std::span<const Word> own = domains_.words(whole);
+            const std::span<Word> own =
+                std::span(sets).subspan(inside * catalog_->words(), catalog_->words());
+            numbering_.put_numbered(inside, numbering_.domains().words(whole), own.data());
             if (!any_empty && is_empty(own)) {
                 any_empty = true;
                 impossible_ = inside;
             }
-            std::copy(own.begin(), own.end(), sets.data() + inside * catalog_->words());
         });
         if (any_empty) {
             return Propagation::kContradiction;
@@ -494,32 +532,26 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         std::uint32_t& backtracks
     ) {
         RandomStream random(key);
-        const PartWeights weights = {weights_, weight_numbers_};
         const Order order = plan.is_other_order ? other_order(options.order) : options.order;
-        const SearchAids aids = {options.board, chooser, options.dead_ends};
+        const GrowingSets growing = numbering_.growing(options.growing);
+        const SearchAids aids = {
+            options.board,
+            chooser,
+            options.growing.empty() ? nullptr : &growing,
+            options.dead_ends};
         const auto search_with = [&](auto picker) {
-            Search search(*catalog_, picker, weights, aids, random, stop);
+            Search search(*catalog_, picker, *weights_, aids, random, stop);
             const SearchOutcome outcome = search.run(plan.budget);
             backtracks += search.backtracks();
             return outcome;
         };
         if (!options.growing.empty()) {
             const std::vector<Site> shuffled = shuffled_sites(topology_->site_count(), random);
-            return search_with(GrowthPicker(*catalog_, options.growing, shuffled, random));
+            return search_with(GrowthPicker(*catalog_, growing, shuffled, random));
         }
         return with_picker(
-            order, *catalog_, *topology_, options.scan, weights, random, search_with
+            order, *catalog_, *topology_, options.scan, *weights_, random, search_with
         );
-    }
-
-    void number_weights(const Part& part) {
-        if (weights_.is_same_everywhere()) {
-            return;
-        }
-        weight_numbers_.resize(catalog_->site_count());
-        for_each_site(part, [&](Site inside, Site whole) {
-            weight_numbers_[inside] = weights_.number(whole);
-        });
     }
 
     bool write_if_accepted(const Part& part, std::span<Label> model, PartJudge* judge) {
@@ -537,23 +569,23 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
         return false;
     }
 
+    // The only label of each site.
     void write(const Part& part, std::span<Label> model) const {
         for_each_site(part, [&](Site inside, Site whole) {
-            model[whole] = first_label(catalog_->labels(inside));  // the only one
+            model[whole] = numbering_.label(inside, first_label(catalog_->labels(inside)));
         });
     }
 
-    const Relations& relations_;
-    const SiteDomains& domains_;
-    const SiteWeights& weights_;
+    Numbering numbering_;
     Bases* bases_;
     std::unique_ptr<const Inner> topology_;
-    std::optional<Catalog<Inner, kWords>> catalog_;  // of topology_
-    typename Bases::Key key_;                        // of the part's base
-    std::vector<std::uint16_t> weight_numbers_;      // of the sites' weights; empty: all the same
-    std::vector<Word> start_;                        // what the surroundings leave
-    std::vector<Label> before_;                      // the part's labels, while they are judged
-    Site impossible_ = 0;                            // where they leave nothing
+    // Of topology_.
+    std::optional<Catalog<Inner, kWords, typename Numbering::RelationsOfSites>> catalog_;
+    typename Bases::Key key_;             // of the part's base
+    std::optional<PartWeights> weights_;  // of the part
+    std::vector<Word> start_;             // what the surroundings leave
+    std::vector<Label> before_;           // the part's labels, while they are judged
+    Site impossible_ = 0;                 // where they leave nothing
 };
 
 }  // namespace modelsynth

@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <type_traits>
 #include <vector>
 
 namespace modelsynth {
@@ -29,17 +30,18 @@ namespace modelsynth {
 //
 // kWords is the number of words of a set when it is known at compile time, 0 when it is not. Such
 // sets may be large: where few labels went from a site, it follows these instead of adding up what
-// all that are left allow.
+// all that are left allow. Where R is RelationsOfKinds, the set of a site is of the labels of its
+// kind, in the numbers that they have there.
 // Cost: narrow O(words); propagate O(removed labels * arcs) rows at most, no allocation once warm.
 // Thread-safety: one thread at a time; topology and relations are only read.
-template <Topology T, std::size_t kWords>
+template <Topology T, std::size_t kWords, class R = Relations>
 class Catalog {
   public:
     using Mark = std::size_t;
     using Labels = std::span<const Word, kWords == 0 ? std::dynamic_extent : kWords>;
 
     // Requires: topology and relations outlive the catalog.
-    Catalog(const T& topology, const Relations& relations)
+    Catalog(const T& topology, const R& relations)
         : topology_(topology),
           relations_(relations),
           words_(kWords == 0 ? relations.words() : kWords),
@@ -53,6 +55,9 @@ class Catalog {
             allowed_lists_.emplace(relations);
             seen_.resize(topology.site_count() * words_);
             unseen_.resize(topology.site_count(), 1);
+        }
+        if constexpr (kIsStepped && kIsKinded) {
+            check(topology.has_steps_only(), "a grid in layers that closes on itself");
         }
         check(words_ == relations.words(), "a catalog of another width than its relations");
         check(
@@ -152,7 +157,11 @@ class Catalog {
     // is good only for undo() or restore(). kStopped: `stop` was requested; likewise.
     [[nodiscard]] Propagation propagate(const std::stop_token& stop) {
         Propagation result = Propagation::kConsistent;
-        if constexpr (kIsStepped) {
+        if constexpr (kIsStepped && kIsKinded) {
+            result = propagate_by_steps(stop);
+        } else if constexpr (kIsKinded) {
+            result = propagate_by_kinds(stop);
+        } else if constexpr (kIsStepped) {
             result =
                 topology_.has_steps_only() ? propagate_by_steps(stop) : propagate_by_arcs(stop);
         } else {
@@ -203,6 +212,7 @@ class Catalog {
 
   private:
     static constexpr bool kIsStepped = kWords > 0 && SteppedTopology<T>;
+    static constexpr bool kIsKinded = !std::is_same_v<R, Relations>;
     static constexpr std::size_t kTrailStart = 64;
     // About as many words of rows are added up in the time that it takes to follow a pair.
     static constexpr std::size_t kWordsPerPair = 24;
@@ -231,7 +241,12 @@ class Catalog {
         state.sets = set(0);
         state.steps = topology_.steps();
         state.arcs = topology_.arc_masks();
-        state.unions = relations_.union_data(0, 0);
+        if constexpr (kIsKinded) {
+            state.kinds = relations_.kinds();
+            state.tables = relations_.by_kind().tables();
+        } else {
+            state.unions = relations_.union_data(0, 0);
+        }
         state.queue = queue_.data();
         state.queue_size = queue_.size();
         state.queue_head = queue_head_;
@@ -246,7 +261,7 @@ class Catalog {
         state.changed = tracking_ ? &changed_ : nullptr;
         state.emptied = emptied_;
         const Propagation result =
-            StepKernel<T::kRelationCount, kWords>::run(state, stop, vector_level_);
+            StepKernel<T::kRelationCount, kWords, kIsKinded>::run(state, stop, vector_level_);
         queue_head_ = state.queue_head;
         queue_length_ = state.queue_length;
         trail_length_ = state.trail_length;
@@ -271,6 +286,60 @@ class Catalog {
                     consistent = consistent && narrow(neighbour, support_along(relation));
                 });
             }
+            if (!consistent) {
+                return Propagation::kContradiction;
+            }
+        }
+        return Propagation::kConsistent;
+    }
+
+    Propagation propagate_by_kinds(const std::stop_token& stop) requires(kIsKinded&& kWords > 0) {
+        constexpr std::size_t kStopInterval = 1024;
+        constexpr std::size_t kBits = 4;  // of the groups in KindRelations
+        const auto& by_kind = relations_.by_kind();
+        const std::uint8_t* const kinds = relations_.kinds();
+        std::array<const Word*, kWords * kWordBits / kBits> rows;
+        std::array<Word, kWords> support = {};
+        std::size_t looked_at = 0;
+        while (queue_length_ > 0) {
+            if (++looked_at % kStopInterval == 0 && stop.stop_requested()) {
+                return Propagation::kStopped;
+            }
+            const Site site = dequeue();
+            const auto& table = by_kind.table(kinds[site]);
+            std::size_t count = 0;
+            for_each_group<kBits>(labels(site), [&](std::size_t group, std::size_t members) {
+                rows[count++] = table.unions + (group << kBits | members) * table.stride;
+            });
+            bool consistent = true;
+            topology_.for_each_arc(site, [&](Site neighbour, RelationId relation) {
+                if (!consistent) {
+                    return;
+                }
+                const std::uint8_t far = kinds[neighbour];
+                const std::size_t first = table.firsts[by_kind.place(relation, far)];
+                const std::size_t width = by_kind.words_of(far);
+                support.fill(0);
+                const auto add_up = [&]<std::size_t kWidth>() {
+                    std::array<Word, kWidth> sum = {};
+                    for (std::size_t row = 0; row < count; ++row) {
+                        for (std::size_t word = 0; word < kWidth; ++word) {
+                            sum[word] |= rows[row][first + word];
+                        }
+                    }
+                    std::copy(sum.begin(), sum.end(), support.begin());
+                };
+                if constexpr (kWords > 1) {
+                    if (width == 1) {
+                        add_up.template operator()<1>();
+                        consistent = narrow(neighbour, support.data());
+                        return;
+                    }
+                }
+                // What lies behind fewer words is of other rows, and the set has no such labels.
+                add_up.template operator()<kWords>();
+                consistent = narrow(neighbour, support.data());
+            });
             if (!consistent) {
                 return Propagation::kContradiction;
             }
@@ -467,7 +536,7 @@ class Catalog {
     }
 
     const T& topology_;
-    const Relations& relations_;
+    const R& relations_;
     std::size_t words_;
     std::size_t padding_;  // words before the first set and after the last; see StepState
     std::vector<Word> sets_;

@@ -122,6 +122,13 @@ class LabelSet {
 
     void insert(Label label) { words_[label / kWordBits] |= Word{1} << (label % kWordBits); }
 
+    // Those of a row of words(). Requires: as many words as there are here.
+    void insert(std::span<const Word> labels) {
+        for (std::size_t word = 0; word < words_.size(); ++word) {
+            words_[word] |= labels[word];
+        }
+    }
+
     void erase(Label label) { words_[label / kWordBits] &= ~(Word{1} << (label % kWordBits)); }
 
     [[nodiscard]] bool contains(Label label) const {

@@ -74,6 +74,20 @@ LabelWeights::LabelWeights(std::span<const double> weights)
             weighted_logs_[label] = std::uint64_t{weights_[label]} * fixed_log2(weights_[label]);
         }
     }
+    find_equal();
+}
+
+LabelWeights LabelWeights::of_labels(std::span<const Label> labels) const {
+    LabelWeights result;
+    for (const Label label : labels) {
+        result.weights_.push_back(weights_[label]);
+        result.weighted_logs_.push_back(weighted_logs_[label]);
+    }
+    result.find_equal();
+    return result;
+}
+
+void LabelWeights::find_equal() {
     if (!weights_.empty() && std::count(weights_.begin(), weights_.end(), weights_.front()) ==
                                  static_cast<std::ptrdiff_t>(weights_.size())) {
         for (std::uint64_t count = 0; count <= weights_.size(); ++count) {
@@ -144,7 +158,8 @@ LabelWeights::Sums LabelWeights::add_up(std::span<const Word> set) const {
         constexpr std::size_t kGroups = kWordBits / kGroupBits;  // of a word
         constexpr Word kMembers = (Word{1} << kGroupBits) - 1;
         const Sums* subsets = group_sums_.data();
-        for (const Word word : set) {
+        // A set of more words than there are labels for has none in them.
+        for (const Word word : set.first(std::min(set.size(), words_for(weights_.size())))) {
             // Looking up empty groups too is cheaper than to mispredict how many there are.
             for (std::size_t group = 0; group < kGroups; ++group) {
                 const Sums& part = subsets[word >> group * kGroupBits & kMembers];

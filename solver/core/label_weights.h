@@ -20,6 +20,10 @@ class LabelWeights {
     // Requires: every weight finite and >= 0 (checked). A positive weight stays positive.
     explicit LabelWeights(std::span<const double> weights);
 
+    // The weights of some of the labels, numbered anew in the order given: sets of them are drawn
+    // from as if they were numbered as before.
+    [[nodiscard]] LabelWeights of_labels(std::span<const Label> labels) const;
+
     [[nodiscard]] std::uint32_t of(Label label) const { return weights_[label]; }
 
     // A label of the set, drawn by weight; all alike when every weight in the set is 0.
@@ -34,6 +38,11 @@ class LabelWeights {
 
   private:
     static constexpr std::size_t kGroupBits = 4;
+
+    LabelWeights() = default;
+
+    // Fills entropy_of_count_.
+    void find_equal();
 
     // Over the labels of a set.
     struct Sums {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/core/aligned_words.h"
 #include "solver/core/label_set.h"
 
 #include <bit>
@@ -58,7 +59,7 @@ class Relations {
     // group_bits() * group + i at bit i. The rows of all unions lie one after the other, those of
     // a group by rising `members`, the first one at a multiple of 64 bytes.
     [[nodiscard]] const Word* union_data(std::size_t group, std::size_t members) const {
-        return unions_.data()->words + (group << group_bits_ | members) * stride_;
+        return unions_.data() + (group << group_bits_ | members) * stride_;
     }
 
     [[nodiscard]] std::size_t label_count() const { return label_count_; }
@@ -76,16 +77,18 @@ class Relations {
   private:
     static constexpr std::size_t kVectorWords = 4;
 
-    struct alignas(64) CacheLine {
-        Word words[8] = {};
-    };
-
     std::size_t label_count_;
     std::size_t words_;
     std::size_t group_bits_;
     std::vector<RelationId> reverse_;
     std::size_t stride_;
-    std::vector<CacheLine> unions_;
+    AlignedWords unions_;
 };
+
+// Fills the rows of all unions of labels, where those of one label each are there: a table as of
+// Relations::union_data().
+void add_up_unions(
+    Word* table, std::size_t label_count, std::size_t group_bits, std::size_t stride
+);
 
 }  // namespace modelsynth

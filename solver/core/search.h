@@ -2,6 +2,7 @@
 
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/growing_sets.h"
 #include "solver/core/label_chooser.h"
 #include "solver/core/least_key.h"
 #include "solver/core/order.h"
@@ -132,6 +133,7 @@ struct SearchBudget {
 struct SearchAids {
     ConstraintBoard* board = nullptr;  // the constraints beside the relations; follows the catalog
     PartChooser* chooser = nullptr;    // chooses labels in place of the weights alone
+    const GrowingSets* growing = nullptr;  // avoided where there is no chooser
     // By site, counted up where a choice before was found wrong: at the site that had no label
     // left, with a board at the one whose labels were tried. Empty: not counted.
     std::span<std::uint32_t> dead_ends = {};
@@ -162,6 +164,7 @@ class Search {
           weights_(weights),
           board_(aids.board),
           chooser_(aids.chooser),
+          growing_(aids.growing),
           dead_ends_(aids.dead_ends),
           random_(random),
           stop_(std::move(stop)) {}
@@ -222,8 +225,12 @@ class Search {
 
     Label choose(Site site) {
         const LabelWeights& weights = weights_.at(site);
-        return chooser_ == nullptr ? weights.draw(catalog_.labels(site), random_)
-                                   : chooser_->choose(catalog_, site, weights, random_);
+        if (chooser_ != nullptr) {
+            return chooser_->choose(catalog_, site, weights, random_);
+        }
+        const auto labels = catalog_.labels(site);
+        return growing_ == nullptr ? weights.draw(labels, random_)
+                                   : growing_->draw(site, labels, weights, random_);
     }
 
     Propagation refute(Site site, Label label) {
@@ -284,6 +291,7 @@ class Search {
     PartWeights weights_;
     ConstraintBoard* board_;
     PartChooser* chooser_;
+    const GrowingSets* growing_;
     std::span<std::uint32_t> dead_ends_;
     RandomStream& random_;
     std::stop_token stop_;

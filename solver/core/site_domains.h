@@ -70,6 +70,9 @@ class SiteDomains {
         });
     }
 
+    // Numbers are below this; some may be of no site.
+    [[nodiscard]] std::size_t set_count() const { return sets_.size(); }
+
     // The set of such a number.
     [[nodiscard]] const LabelSet& set(std::uint16_t number) const { return sets_[number]; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/core/growing_sets.h"
 #include "solver/core/random.h"
 #include "solver/core/search.h"
 #include "solver/core/site_weights.h"
@@ -72,7 +73,7 @@ class GrowthPicker {
     template <class CatalogType>
     GrowthPicker(
         CatalogType& catalog,
-        std::span<const LabelSet> sets,
+        const GrowingSets& sets,
         std::span<const Site> order,
         RandomStream& random
     )
@@ -93,7 +94,7 @@ class GrowthPicker {
         while (!bound_.empty()) {
             const std::uint32_t at = random_.below(static_cast<std::uint32_t>(bound_.size()));
             site = bound_[at];
-            if (is_bound(catalog.labels(site))) {
+            if (sets_.is_bound(site, catalog.labels(site))) {
                 return true;
             }
             // Decided, or freed again when a choice was taken back.
@@ -109,28 +110,15 @@ class GrowthPicker {
     void go_back(std::size_t position) { rest_.go_back(position); }
 
   private:
-    template <class Labels>
-    [[nodiscard]] bool is_bound(const Labels& labels) const {
-        return has_several(labels) &&
-               std::any_of(sets_.begin(), sets_.end(), [&labels](const LabelSet& set) {
-                   for (std::size_t word = 0; word < labels.size(); ++word) {
-                       if ((labels[word] & ~set.words()[word]) != 0) {
-                           return false;
-                       }
-                   }
-                   return true;
-               });
-    }
-
     template <class CatalogType>
     void list_if_bound(const CatalogType& catalog, Site site) {
-        if (is_listed_[site] == 0 && is_bound(catalog.labels(site))) {
+        if (is_listed_[site] == 0 && sets_.is_bound(site, catalog.labels(site))) {
             is_listed_[site] = 1;
             bound_.push_back(site);
         }
     }
 
-    std::span<const LabelSet> sets_;
+    const GrowingSets& sets_;
     ScanPicker rest_;
     RandomStream& random_;
     std::vector<std::uint8_t> is_listed_;  // in bound_

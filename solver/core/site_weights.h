@@ -26,6 +26,8 @@ class SiteWeights {
 
     [[nodiscard]] bool is_same_everywhere() const { return table_of_site_.empty(); }
 
+    [[nodiscard]] std::size_t table_count() const { return tables_.size(); }
+
     [[nodiscard]] const LabelWeights& table(std::size_t number) const { return tables_[number]; }
 
     [[nodiscard]] std::uint16_t number(Site site) const {

@@ -24,6 +24,8 @@ struct StepState {
     std::array<std::int64_t, kRelations> steps = {};  // from a site to its neighbour, by relation
     const std::uint8_t* arcs = nullptr;               // bit r of a site: there is that neighbour
     const Word* unions = nullptr;                     // Relations::union_data() of the first group
+    const std::uint8_t* kinds = nullptr;              // in its place, in layers: by site, and ...
+    const Word* const* tables = nullptr;              // ... by kind
 
     // The sites to look at, a ring in which each is once at most, with room for one more.
     Site* queue = nullptr;
@@ -55,7 +57,7 @@ struct StepState {
 //
 // One source serves every VectorLevel; the compiler makes of it what the level allows, so results
 // are the same.
-template <std::size_t kRelations, std::size_t kWords>
+template <std::size_t kRelations, std::size_t kWords, bool kLayered>
 class StepKernel {
   public:
     static Propagation run(
@@ -185,6 +187,8 @@ class StepKernel {
         const auto steps = state.steps;
         const std::uint8_t* const arcs = state.arcs;
         const Word* const unions = state.unions;
+        const std::uint8_t* const kinds = state.kinds;
+        const Word* const* const tables = state.tables;
         Word* const sets = state.sets;
         Site* const queue = state.queue;
         const std::size_t queue_size = state.queue_size;
@@ -210,7 +214,7 @@ class StepKernel {
         };
         const auto look = [&](std::size_t lane) __attribute__((always_inline)) {
             const Word* const own = sets + sites[lane] * kWords;
-            collect(own, unions, supports[lane]);
+            collect(own, kLayered ? tables[kinds[sites[lane]]] : unions, supports[lane]);
             find_unsupported(own, steps, supports[lane], lane * kLaneBits, found);
             return static_cast<unsigned>(arcs[sites[lane]]) << (lane * kLaneBits);
         };

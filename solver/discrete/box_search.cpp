@@ -38,8 +38,9 @@ std::vector<Site> scan_images_last(
 
 }  // namespace
 
-BoxSearch::BoxSearch(const Problem& problem, Bases* bases)
-    : problem_(problem), on_grid_(problem.relations, problem.domains, problem.weights, bases) {
+BoxSearch::BoxSearch(const Problem& problem, Bases* bases, const LayeredRelations* by_kind)
+    : problem_(problem),
+      on_grid_(problem.relations, problem.domains, problem.weights, bases, by_kind) {
     if (problem.symmetries != nullptr) {
         on_graph_.emplace(problem.symmetries->relations(), problem.domains, problem.weights);
     }

@@ -4,6 +4,7 @@
 #include "solver/core/block_search.h"
 #include "solver/core/graph_topology.h"
 #include "solver/core/grid_topology.h"
+#include "solver/core/layered_relations.h"
 #include "solver/discrete/problem.h"
 
 #include <cstddef>
@@ -42,8 +43,10 @@ class BoxSearch {
   public:
     using Bases = BlockBases<GridTopology>;
 
-    // `bases` as of BlockSearch.
-    explicit BoxSearch(const Problem& problem, Bases* bases = nullptr);
+    // `bases` and `by_kind` as of BlockSearch.
+    explicit BoxSearch(
+        const Problem& problem, Bases* bases = nullptr, const LayeredRelations* by_kind = nullptr
+    );
 
     // As BlockSearch::modify(), for the box and its images.
     [[nodiscard]] BlockResult modify(

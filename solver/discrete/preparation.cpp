@@ -19,6 +19,18 @@ constexpr std::size_t kKeptSearchesMax = 8;
 constexpr std::uint32_t kProbes = 8;
 constexpr GridSize kProbeSize = {16, 16, 16};
 
+// Where boxes are searched by relations and weights alone, and not from a model whose labels may
+// stand where no new one could.
+std::unique_ptr<const LayeredRelations> layers_of(const Problem& problem) {
+    const bool is_open = !problem.periodic.x && !problem.periodic.y && !problem.periodic.z;
+    if (!is_open || problem.symmetries != nullptr || problem.start) {
+        return nullptr;
+    }
+    return LayeredRelations::make(
+        problem.relations, problem.domains, problem.weights, problem.size
+    );
+}
+
 }  // namespace
 
 Preparation::Preparation(
@@ -30,6 +42,7 @@ Preparation::Preparation(
     : example_(std::move(example)),
       parameters_(parameters),
       problem_(std::move(problem)),
+      by_kind_(layers_of(problem_)),
       order_(parameters.order.order) {
     if (const auto& blocks = *parameters_.blocks) {
         if (auto plain = find_plain_model(*example_, problem_)) {
@@ -119,7 +132,7 @@ std::unique_ptr<BoxSearch> Preparation::take_search() {
             return search;
         }
     }
-    return std::make_unique<BoxSearch>(problem_, &bases_);
+    return std::make_unique<BoxSearch>(problem_, &bases_, by_kind_.get());
 }
 
 void Preparation::give_back(std::unique_ptr<BoxSearch> search) {

@@ -80,6 +80,7 @@ class Preparation {
     std::shared_ptr<const Example> example_;
     Parameters parameters_;
     Problem problem_;
+    std::unique_ptr<const LayeredRelations> by_kind_;  // of the problem; null: none
     std::shared_ptr<const std::vector<Label>> plain_model_;
     bool is_plain_model_rigid_ = false;
     Order order_;

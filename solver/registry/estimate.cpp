@@ -11,12 +11,13 @@ namespace modelsynth {
 namespace {
 
 // Bytes, measured with the built-in examples and rounded up.
-constexpr std::uint64_t kAny = std::uint64_t{16} << 20;  // whatever the size
-constexpr std::uint64_t kCell = 200;                     // labels, events, the GLB
-constexpr std::uint64_t kCellOfWhole = 3;                // for each label, made at once
-constexpr std::uint64_t kCellOfRule = 64;                // for each constraint
-constexpr std::uint64_t kCellOfSpacings = 500;           // between planes of solids
-constexpr std::uint64_t kCellOfThreeFamilies = 80;       // for each three that meet in points
+constexpr std::uint64_t kAny = std::uint64_t{16} << 20;        // whatever the size
+constexpr std::uint64_t kAnySolids = std::uint64_t{32} << 20;  // with KindRelations
+constexpr std::uint64_t kCell = 200;                           // labels, events, the GLB
+constexpr std::uint64_t kCellOfWhole = 3;                      // for each label, made at once
+constexpr std::uint64_t kCellOfRule = 64;                      // for each constraint
+constexpr std::uint64_t kCellOfSpacings = 500;                 // between planes of solids
+constexpr std::uint64_t kCellOfThreeFamilies = 80;             // for each three that meet in points
 
 Estimate estimate_grid(const discrete::Example& example, const discrete::Parameters& parameters) {
     const std::uint64_t cells = parameters.size->cell_count();
@@ -41,8 +42,8 @@ Estimate estimate_solids(
     // Planes of three families meet about once in a cell.
     result.choices = cells.cell_count() * threes;
     result.memory_bytes =
-        kAny + cells.cell_count() *
-                   (kCellOfSpacings + kCellOfThreeFamilies * threes + kCellOfRule * rules);
+        kAnySolids + cells.cell_count() *
+                         (kCellOfSpacings + kCellOfThreeFamilies * threes + kCellOfRule * rules);
     return result;
 }
 

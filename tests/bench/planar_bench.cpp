@@ -235,6 +235,7 @@ Options parse_options(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    modelsynth::bench::keep_freed_memory();
     constexpr std::int32_t kTilesSide = 100;
     constexpr std::int32_t kPatternsSide = 48;
     const Options options = parse_options(argc, argv);

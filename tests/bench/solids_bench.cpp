@@ -12,6 +12,7 @@
 #include "solver/continuous/synthesis.h"
 #include "solver/examples/solids/built_in_solids.h"
 #include "solver/examples/solids/shapes.h"
+#include "tests/bench/timing.h"
 
 #include <sys/resource.h>
 
@@ -29,6 +30,8 @@
 
 namespace modelsynth {
 namespace {
+
+using modelsynth::bench::median;
 
 using Clock = std::chrono::steady_clock;
 
@@ -75,11 +78,6 @@ class FirstBlock final : public Observer {
   private:
     Clock::time_point begun_ = Clock::now();
 };
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 void run(const Work& work, std::uint64_t seeds) {
     auto begun = Clock::now();
@@ -248,6 +246,7 @@ void run_all(std::uint64_t seeds, const std::vector<std::string>& names) {
 }  // namespace modelsynth
 
 int main(int argc, char** argv) {
+    modelsynth::bench::keep_freed_memory();
     std::uint64_t seeds = 5;
     std::vector<std::string> names;
     for (int i = 1; i < argc; ++i) {

@@ -302,6 +302,7 @@ Options parse_options(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    modelsynth::bench::keep_freed_memory();
     const Options options = parse_options(argc, argv);
     const int few_seeds = std::min(options.seeds, 5);
     print_header(options.has_peer);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -23,6 +25,14 @@ template <class Work>
     const std::chrono::duration<double, std::milli> taken =
         std::chrono::steady_clock::now() - begun;
     return {taken.count(), 1000 * static_cast<double>(processor_taken) / CLOCKS_PER_SEC};
+}
+
+// As the server's main(): what is freed is not given back to the system and taken anew, page by
+// page. Without it the time of a model depends on what was made before it.
+inline void keep_freed_memory() {
+    constexpr int kKeptBytes = 32 << 20;
+    ::mallopt(M_MMAP_THRESHOLD, kKeptBytes);
+    ::mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 }
 
 // Requires: at least one value.

@@ -31,37 +31,6 @@ std::size_t members_in(
 
 }  // namespace
 
-// Nothing of what is to hang together begins by itself: it only goes on.
-class Growth::Chooser final : public LabelChooser {
-  public:
-    explicit Chooser(std::span<const LabelSet> growing) : growing_(growing) {}
-
-    void look_around(Site /*site*/, std::vector<Site>& around) const override { around.clear(); }
-
-    [[nodiscard]] Label choose(
-        std::span<const Word> possible,
-        std::span<const Site> /*around*/,
-        std::span<const Label> /*decided*/,
-        const LabelWeights& weights,
-        RandomStream& random
-    ) const override {
-        std::vector<Word> left(possible.begin(), possible.end());
-        std::vector<Word> without(possible.size());
-        for (const LabelSet& set : growing_) {
-            for (std::size_t word = 0; word < left.size(); ++word) {
-                without[word] = left[word] & ~set.words()[word];
-            }
-            if (!is_empty(without)) {
-                left = without;
-            }
-        }
-        return weights.draw(left, random);
-    }
-
-  private:
-    std::span<const LabelSet> growing_;
-};
-
 Growth::Growth(const Problem& problem)
     : problem_(problem),
       skeleton_(problem.arrangement),
@@ -69,16 +38,12 @@ Growth::Growth(const Problem& problem)
     for (const Connection& connection : problem.connections) {
         growing_.push_back(connection.figures);
     }
-    chooser_ = std::make_unique<const Chooser>(growing_);
 }
-
-Growth::~Growth() = default;
 
 void Growth::enter(const GraphPart& part, BlockOptions& options) {
     connections_.enter(part.sites());
     options.judge = &connections_;
     options.growing = growing_;
-    options.chooser = chooser_.get();
 }
 
 BlockResult Growth::begin_something(

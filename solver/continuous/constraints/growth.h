@@ -7,7 +7,6 @@
 #include "solver/core/graph_topology.h"
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -22,7 +21,6 @@ class Growth {
   public:
     // Requires: the problem outlives it, and has connections.
     explicit Growth(const Problem& problem);
-    ~Growth();
 
     // The model stands.
     void start(std::span<const Label> model) { connections_.start(model); }
@@ -48,8 +46,6 @@ class Growth {
     [[nodiscard]] std::optional<Error> find_fault() const;
 
   private:
-    class Chooser;
-
     [[nodiscard]] bool is_beginning_due(
         std::size_t connection, std::uint32_t blocks_left, RandomStream& random
     ) const;
@@ -59,7 +55,6 @@ class Growth {
     std::vector<LabelSet> growing_;  // by connection
     Skeleton skeleton_;
     Connections connections_;
-    std::unique_ptr<const Chooser> chooser_;
 };
 
 }  // namespace modelsynth::continuous
