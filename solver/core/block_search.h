@@ -3,6 +3,8 @@
 #include "solver/core/block_bases.h"
 #include "solver/core/catalog.h"
 #include "solver/core/constraints/constraint_board.h"
+#include "solver/core/graph_topology.h"
+#include "solver/core/grid_topology.h"
 #include "solver/core/growing_sets.h"
 #include "solver/core/label_chooser.h"
 #include "solver/core/part_numbering.h"
@@ -587,5 +589,9 @@ class BlockSearch<Part>::OfWidth final : public AnyWidth {
     std::vector<Label> before_;           // the part's labels, while they are judged
     Site impossible_ = 0;                 // where they leave nothing
 };
+
+// Each is compiled for ten widths and numberings; that takes long, so it is done once.
+extern template class BlockSearch<GridPart>;
+extern template class BlockSearch<GraphPart>;
 
 }  // namespace modelsynth

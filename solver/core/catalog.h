@@ -318,27 +318,33 @@ class Catalog {
                 }
                 const std::uint8_t far = kinds[neighbour];
                 const std::size_t first = table.firsts[by_kind.place(relation, far)];
-                const std::size_t width = by_kind.words_of(far);
-                support.fill(0);
-                const auto add_up = [&]<std::size_t kWidth>() {
+                const auto look = [&]<std::size_t kWidth>() {
                     std::array<Word, kWidth> sum = {};
                     for (std::size_t row = 0; row < count; ++row) {
                         for (std::size_t word = 0; word < kWidth; ++word) {
                             sum[word] |= rows[row][first + word];
                         }
                     }
-                    std::copy(sum.begin(), sum.end(), support.begin());
+                    // Words behind those of the far kind are of other rows, and sets there have no
+                    // labels in them.
+                    const Word* const own = set(neighbour);
+                    Word removed = 0;
+                    for (std::size_t word = 0; word < kWidth; ++word) {
+                        removed |= own[word] & ~sum[word];
+                    }
+                    if (removed != 0) {
+                        support.fill(0);
+                        std::copy(sum.begin(), sum.end(), support.begin());
+                        consistent = narrow(neighbour, support.data());
+                    }
                 };
                 if constexpr (kWords > 1) {
-                    if (width == 1) {
-                        add_up.template operator()<1>();
-                        consistent = narrow(neighbour, support.data());
+                    if (by_kind.words_of(far) == 1) {
+                        look.template operator()<1>();
                         return;
                     }
                 }
-                // What lies behind fewer words is of other rows, and the set has no such labels.
-                add_up.template operator()<kWords>();
-                consistent = narrow(neighbour, support.data());
+                look.template operator()<kWords>();
             });
             if (!consistent) {
                 return Propagation::kContradiction;

@@ -41,6 +41,9 @@ class KindRelations {
         const GraphPart& sample
     );
 
+    KindRelations(const KindRelations&) = delete;
+    KindRelations& operator=(const KindRelations&) = delete;
+
     [[nodiscard]] const LabelKinds& kinds() const { return kinds_; }
 
     // Requires: `domains` are those that it was made of.

@@ -39,6 +39,9 @@ class LayeredRelations {
         const GridSize& size
     );
 
+    LayeredRelations(const LayeredRelations&) = delete;
+    LayeredRelations& operator=(const LayeredRelations&) = delete;
+
     [[nodiscard]] const LabelKinds& kinds() const { return kinds_; }
 
     // The layer that a cell's site is in, from the ground up.
