@@ -6,6 +6,7 @@
 #include "solver/core/block_search.h"
 #include "solver/core/kind_relations.h"
 #include "solver/core/layered_relations.h"
+#include "solver/core/part_numbering.h"
 #include "tests/support/graph.h"
 
 #include <gtest/gtest.h>
@@ -322,6 +323,49 @@ struct KindedGraph {
     }
 };
 
+TEST(KindRelations, AllowWhatTheWholeAllows) {
+    const KindedGraph graph(270, 3);
+    const std::vector<double> given(270, 1);
+    const SiteWeights weights{LabelWeights(given)};
+    const GraphTopology topology(KindedGraph::kSites, graph.arcs);
+    const auto by_kind =
+        KindRelations::make(graph.relations, graph.domains, weights, whole_graph(topology));
+    ASSERT_NE(by_kind, nullptr);
+    std::vector<Site> sites;
+    for (Site site = 0; site < KindedGraph::kSites; site += 2) {
+        sites.push_back(site);
+    }
+    const GraphPart part = part_of_graph(graph.arcs, sites);
+    KindNumbering<GraphPart, KindRelations> numbering(
+        *by_kind, graph.relations, graph.domains, weights
+    );
+    numbering.enter(part, true);
+    std::size_t strangers = 0;  // labels where no new one could stand
+    std::size_t allowed = 0;
+    part.for_each_outward_arc([&](Site inside, Site outside, RelationId outward) {
+        const std::uint8_t kind = by_kind->kind_at(part.global(inside), graph.domains);
+        const std::uint8_t far_kind = by_kind->kind_at(outside, graph.domains);
+        for (Label label = 0; label < 270; ++label) {
+            std::vector<Word> expected(by_kind->words());
+            const RelationId inward = graph.relations.reverse(outward);
+            for_each_label(graph.relations.row(inward, label), [&](Label near) {
+                const auto labels = by_kind->kinds().labels(kind);
+                const auto found = std::lower_bound(labels.begin(), labels.end(), near);
+                if (found != labels.end() && *found == near) {
+                    const auto number = static_cast<std::size_t>(found - labels.begin());
+                    expected[number / kWordBits] |= Word{1} << (number % kWordBits);
+                }
+            });
+            const Word* const told = numbering.allowed(inside, outside, outward, label);
+            EXPECT_TRUE(std::equal(expected.begin(), expected.end(), told));
+            strangers += by_kind->kinds().number(far_kind, label) == kNoLabel ? 1U : 0U;
+            allowed += count_labels(expected);
+        }
+    });
+    EXPECT_GT(strangers, 1000U);
+    EXPECT_GT(allowed, 1000U);
+}
+
 TEST(KindRelations, MakeTheSameModelsInShorterSets) {
     std::size_t accepted = 0;
     std::size_t backtracks = 0;
@@ -366,7 +410,7 @@ TEST(KindRelations, MakeTheSameModelsInShorterSets) {
                 if (index % 4 == 2) {
                     options.pin = Pin{3, &pinned};
                 }
-                if (index == 9) {
+                if (index == 7) {  // outside of the part
                     one[1] = other[1] = static_cast<Label>(labels - 1);
                 }
                 const RandomKey key = {seed, index, 0, 0};
