@@ -47,10 +47,10 @@ class JobStore {
     // Appends events of a running job, numbered in the commit that writes them, and its checkpoint
     // and links to artifacts in the same one. Under another solver version than the append before,
     // the older checkpoint and models go: they are not what this solver makes. Returns at once;
-    // `done` is called in order of the calls, on the store's thread, with the first seq once they
-    // are on disk. Blocks while too much waits to be written. After one that failed every other of
-    // the lease fails, too, and so does finish(): a log has no gaps. Fails: kLeaseLost, kConflict
-    // when a digest is not stored.
+    // `done` is called on the store's thread, in order of the lease's calls, with the first seq
+    // once they are on disk. Blocks while too much waits to be written. After one that failed every
+    // other of the lease fails, too, and so does finish(): a log has no gaps. Fails: kLeaseLost,
+    // kConflict when a digest is not stored.
     virtual void append(
         const Lease& lease,
         std::vector<NewEvent> events,

@@ -169,29 +169,32 @@ void SqliteStore::append(
     const Progress& progress,
     std::function<void(const Stored<std::uint64_t>&)> done
 ) {
-    auto first_seq = std::make_shared<std::uint64_t>(0);
+    const auto batch =
+        waiting_appends_.add(lease, {std::move(events), progress, std::move(done), 0});
+    if (batch == nullptr) {
+        return;
+    }
     writer_->post(
-        {[this, lease, events = std::move(events), progress, first_seq](Database& database
-         ) -> Stored<void> {
+        {[this, batch](Database& database) -> Stored<void> {
+             waiting_appends_.seal(batch);
              try {
-                 auto first = append_now(database, lease, events, progress);
-                 if (!first) {
-                     note_gap(lease, first.error().code);
-                     return tl::unexpected(std::move(first.error()));
+                 auto written = append_now(database, *batch);
+                 if (!written) {
+                     note_gap(batch->lease, written.error().code);
                  }
-                 *first_seq = *first;
-                 return {};
+                 return written;
              } catch (const SqliteError&) {
-                 note_gap(lease, StoreErrorCode::kUnavailable);
+                 note_gap(batch->lease, StoreErrorCode::kUnavailable);
                  throw;
              }
          },
-         [this, lease, first_seq, done = std::move(done)](const Stored<void>& committed) {
-             if (committed) {
-                 done(*first_seq);
-             } else {
-                 note_gap(lease, committed.error().code);
-                 done(tl::unexpected(committed.error()));
+         [this, batch](const Stored<void>& committed) {
+             waiting_appends_.seal(batch);  // a closed store has not begun with it
+             if (!committed) {
+                 note_gap(batch->lease, committed.error().code);
+             }
+             for (const WaitingAppends::Append& append : batch->appends) {
+                 append.done(committed.map([&append] { return append.first_seq; }));
              }
          }}
     );
@@ -209,13 +212,10 @@ bool SqliteStore::has_gap(const Lease& lease) const {
     return found != gaps_.end() && found->second == lease.token;
 }
 
-Stored<std::uint64_t> SqliteStore::append_now(
-    Database& database,
-    const Lease& lease,
-    const std::vector<NewEvent>& events,
-    const Progress& progress
-) {
-    std::uint64_t first_seq = 0;
+Stored<void> SqliteStore::append_now(Database& database, WaitingAppends::Batch& batch) {
+    const Lease& lease = batch.lease;
+    const Progress& newest = batch.appends.back().progress;
+    std::uint64_t next_seq = 0;
     bool is_new_version = false;
     {
         Statement row = database.prepare(
@@ -228,8 +228,8 @@ Stored<std::uint64_t> SqliteStore::append_now(
         if (has_gap(lease)) {
             return gap_in_log();
         }
-        first_seq = row.natural(0);
-        is_new_version = row.text(1) != progress.solver_version;
+        next_seq = row.natural(0);
+        is_new_version = row.text(1) != newest.solver_version;
     }
     if (is_new_version) {
         // What is known of the job's models was made by another solver and is of no use to this
@@ -237,24 +237,25 @@ Stored<std::uint64_t> SqliteStore::append_now(
         drop_checkpoint(database, lease.job_id);
         unlink_artifacts(database, lease.job_id, Unlinked::kMade);
         database.prepare("UPDATE job SET solver_version = ?, version_base = ? WHERE id = ?")
-            .bind(std::string_view(progress.solver_version))
-            .bind(first_seq - 1)
+            .bind(std::string_view(newest.solver_version))
+            .bind(next_seq - 1)
             .bind(std::string_view(lease.job_id))
             .run();
     }
-    if (progress.checkpoint) {
-        keep_checkpoint(
-            database, lease.job_id, *progress.checkpoint, first_seq + events.size() - 1
-        );
-    }
-    if (auto linked = link_artifacts(database, lease.job_id, progress.artifacts); !linked) {
-        return tl::unexpected(std::move(linked.error()));
-    }
     bool has_block = false;
-    std::uint64_t next_seq = first_seq;
-    for (const NewEvent& event : events) {
-        insert_event(database, lease.job_id, next_seq++, event);
-        has_block = has_block || event.type == "block";
+    for (WaitingAppends::Append& append : batch.appends) {
+        append.first_seq = next_seq;
+        for (const NewEvent& event : append.events) {
+            insert_event(database, lease.job_id, next_seq++, event);
+            has_block = has_block || event.type == "block";
+        }
+        if (append.progress.checkpoint) {
+            keep_checkpoint(database, lease.job_id, *append.progress.checkpoint, next_seq - 1);
+        }
+        if (auto linked = link_artifacts(database, lease.job_id, append.progress.artifacts);
+            !linked) {
+            return linked;
+        }
     }
     database
         .prepare(
@@ -262,13 +263,13 @@ Stored<std::uint64_t> SqliteStore::append_now(
             "fruitless_claims = CASE WHEN ? THEN 0 ELSE fruitless_claims END WHERE id = ?"
         )
         .bind(next_seq)
-        .bind(std::uint64_t{progress.blocks_done})
-        .bind(std::uint64_t{progress.blocks_total})
-        .bind(progress.solved_seconds)
+        .bind(std::uint64_t{newest.blocks_done})
+        .bind(std::uint64_t{newest.blocks_total})
+        .bind(newest.solved_seconds)
         .bind(std::int64_t{has_block})
         .bind(std::string_view(lease.job_id))
         .run();
-    return first_seq;
+    return {};
 }
 
 Stored<Job> SqliteStore::finish(const Lease& lease, const Outcome& outcome) {

@@ -6,6 +6,7 @@
 #include "server/store/job_store.h"
 #include "server/store/sqlite/database.h"
 #include "server/store/sqlite/file_artifacts.h"
+#include "server/store/sqlite/waiting_appends.h"
 #include "server/store/sqlite/writer.h"
 
 #include <condition_variable>
@@ -125,12 +126,7 @@ class SqliteStore final : public JobStore,
     void add_delivery(Database& database, const std::string& id, proto::UnixMillis now);
     void append_event(Database& database, const std::string& id, const NewEvent& event);
     // Fails: as append().
-    Stored<std::uint64_t> append_now(
-        Database& database,
-        const Lease& lease,
-        const std::vector<NewEvent>& events,
-        const Progress& progress
-    );
+    Stored<void> append_now(Database& database, WaitingAppends::Batch& batch);
     // An append failed with that.
     void note_gap(const Lease& lease, StoreErrorCode code);
     [[nodiscard]] bool has_gap(const Lease& lease) const;
@@ -190,6 +186,8 @@ class SqliteStore final : public JobStore,
     std::mutex listeners_mutex_;
     ListenerMap listeners_;
     std::function<void()> on_delivery_;  // guarded by listeners_mutex_
+
+    WaitingAppends waiting_appends_;
 
     std::unique_ptr<Writer> writer_;  // last: its thread uses all of the above
 };

@@ -85,6 +85,57 @@ TEST_P(ProgressContract, AppendTellsInTheOrderOfTheCalls) {
     EXPECT_EQ(log("a").size(), expected - 1);
 }
 
+// While the store is busy with something else what waits may be written at once; every append keeps
+// its events, its number and its checkpoint.
+TEST_P(ProgressContract, WhatWaitsForABusyStoreIsWrittenAsItWasGiven) {
+    const Claim claimed = submit_and_claim("a");
+    const Claim other = submit_and_claim("b");
+    std::promise<void> is_busy;
+    std::promise<void> go_on;
+    jobs().append(other.lease, {block_event(0)}, progress_of(1), [&](const auto&) {
+        is_busy.set_value();
+        go_on.get_future().wait();
+    });
+    is_busy.get_future().wait();
+    constexpr std::uint32_t kAppends = 100;
+    std::vector<std::promise<Stored<std::uint64_t>>> told(kAppends);
+    for (std::uint32_t i = 0; i < kAppends; ++i) {
+        const bool is_checkpoint = i % 7 == 3 && i < 50;
+        std::vector<NewEvent> appended(i % 4, block_event(i));
+        jobs().append(
+            i % 5 == 4 ? other.lease : claimed.lease,
+            std::move(appended),
+            is_checkpoint ? with_checkpoint(i, std::to_string(i)) : progress_of(i),
+            [&told, i](const Stored<std::uint64_t>& first) { told[i].set_value(first); }
+        );
+    }
+    go_on.set_value();
+    std::map<std::string, std::uint64_t> next = {{"a", 2}, {"b", 3}};
+    std::map<std::string, std::vector<std::string>> fields;
+    for (std::uint32_t i = 0; i < kAppends; ++i) {
+        const std::string job = i % 5 == 4 ? "b" : "a";
+        EXPECT_EQ(value(told[i].get_future().get()), next[job]) << i;
+        next[job] += i % 4;
+        fields[job].insert(fields[job].end(), i % 4, block_event(i).fields);
+        if (i == 45) {  // the last checkpoint of "a"
+            expect_checkpoint(
+                value(jobs().checkpoint("a")), {next[job] - 1, i, std::to_string(i / 2), "45"}
+            );
+        }
+    }
+    between_steps();
+    for (const std::string job : {"a", "b"}) {
+        std::vector<std::string> logged;
+        for (const Event& event : log(job)) {
+            logged.push_back(event.fields);
+        }
+        ASSERT_EQ(logged.size(), next[job] - 1);
+        EXPECT_TRUE(std::equal(fields[job].rbegin(), fields[job].rend(), logged.rbegin())) << job;
+    }
+    EXPECT_EQ(find("a").blocks_done, 98U);
+    EXPECT_EQ(find("b").blocks_done, 99U);
+}
+
 TEST_P(ProgressContract, WhatWasToldIsThereToRead) {
     const Claim claimed = submit_and_claim("a");
     for (std::uint64_t i = 0; i < 5; ++i) {
@@ -104,7 +155,7 @@ TEST_P(ProgressContract, AnAppendThatFailsLeavesItsNeighboursAlone) {
     enum Kind : std::uint8_t { kGood, kOfNoJob, kNotStored };
 
     std::mutex mutex;
-    std::vector<std::size_t> told_of_job;
+    std::map<std::string, std::vector<std::size_t>> told_of_job;
     std::map<std::size_t, std::optional<StoreErrorCode>> told;
     std::promise<void> all_told;
     constexpr std::size_t kAppends = 60;
@@ -116,12 +167,10 @@ TEST_P(ProgressContract, AnAppendThatFailsLeavesItsNeighboursAlone) {
         if (i % 3 == kNotStored) {
             progress.artifacts = {{"model.glb", std::string(64, '0')}};
         }
-        jobs().append(lease, {block_event(i)}, progress, [&, i](const auto& first) {
+        jobs().append(lease, {block_event(i)}, progress, [&, i, lease](const auto& first) {
             const std::lock_guard lock(mutex);
             told[i] = error_of(first);
-            if (i % 3 != kOfNoJob) {
-                told_of_job.push_back(i);
-            }
+            told_of_job[lease.job_id].push_back(i);
             if (told.size() == kAppends) {
                 all_told.set_value();
             }
@@ -137,7 +186,9 @@ TEST_P(ProgressContract, AnAppendThatFailsLeavesItsNeighboursAlone) {
                                                   : std::optional(StoreErrorCode::kUnavailable);
         EXPECT_EQ(told[i], expected) << i;
     }
-    EXPECT_TRUE(std::is_sorted(told_of_job.begin(), told_of_job.end()));
+    for (const auto& [job, order] : told_of_job) {
+        EXPECT_TRUE(std::is_sorted(order.begin(), order.end())) << job;
+    }
     EXPECT_EQ(log("a").size(), 1 + kAppends / 3);
     EXPECT_EQ(log("b").size(), 1U);
     EXPECT_EQ(value(jobs().checkpoint("a"))->labels, "57");
