@@ -10,6 +10,7 @@ namespace {
 
 // RandomKey::purpose of where a connected object begins, beside kPurposeSearch.
 constexpr std::uint32_t kPurposeBeginning = 2;
+// For all components of a connection together: a small one is a loss where there are few.
 constexpr std::uint32_t kBeginningsTried = 8;
 
 std::vector<Label> labels_of(const GraphPart& part, std::span<const Label> model) {
@@ -37,7 +38,12 @@ Growth::Growth(const Problem& problem)
       connections_(problem.reading->figures(), skeleton_, problem.connections) {
     for (const Connection& connection : problem.connections) {
         growing_.push_back(connection.figures);
+        order_.push_back(order_.size());
     }
+    // What comes once finds room before what comes many times has taken it.
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+        return problem.connections[a].components < problem.connections[b].components;
+    });
 }
 
 void Growth::enter(const GraphPart& part, BlockOptions& options) {
@@ -57,15 +63,17 @@ BlockResult Growth::begin_something(
 ) {
     RandomStream random({key.seed, key.block, 0, kPurposeBeginning});
     options.attempts = 1;
-    for (std::size_t i = 0; i < growing_.size() && !part.sites().empty(); ++i) {
-        if (!is_beginning_due(i, blocks_left, random)) {
+    for (const std::size_t i : order_) {
+        if (part.sites().empty() || !is_beginning_due(i, blocks_left, random)) {
             continue;
         }
         const std::vector<Label> before = labels_of(part, labels);
         std::vector<Label> largest;
         std::size_t largest_size = 0;
         BlockResult best;
-        for (std::uint32_t tried = 0; tried < kBeginningsTried; ++tried) {
+        const std::uint32_t tries =
+            std::max(std::uint32_t{1}, kBeginningsTried / problem_.connections[i].components);
+        for (std::uint32_t tried = 0; tried < tries; ++tried) {
             const auto count = static_cast<std::uint32_t>(part.sites().size());
             options.pin = Pin{random.below(count), &growing_[i]};
             BlockResult result = search.modify(part, labels, options, key, stop);

@@ -52,7 +52,8 @@ class Growth {
     void put(const GraphPart& part, std::span<const Label> before, std::vector<Label>& labels);
 
     const Problem& problem_;
-    std::vector<LabelSet> growing_;  // by connection
+    std::vector<LabelSet> growing_;   // by connection
+    std::vector<std::size_t> order_;  // of connections, in which they are begun
     Skeleton skeleton_;
     Connections connections_;
 };

@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -134,6 +136,57 @@ TEST_F(ConnectionsOfBars, KnowWhatIsAllInside) {
     connections.start(whole_);
     connections.enter(middle());
     EXPECT_FALSE(connections.is_all_inside(0));
+}
+
+// Bars anywhere, parts anywhere, what is accepted, refused and taken back: always as counted anew.
+TEST_F(ConnectionsOfBars, CountAsWhoCountsAnew) {
+    using Cells = std::array<bool, 8>;  // along x; none at the ends
+    std::mt19937 random(1);
+    const auto below = [&](std::uint32_t n) { return static_cast<std::size_t>(random() % n); };
+    const auto model_of = [&](const Cells& cells) {
+        std::vector<std::pair<double, double>> ends;
+        for (std::size_t x = 0; x < cells.size(); ++x) {
+            if (cells[x] && (x == 0 || !cells[x - 1])) {
+                ends.emplace_back(x, x);
+            }
+            if (cells[x]) {
+                ends.back().second += 1;
+            }
+        }
+        return std::pair(bars(ends), static_cast<std::uint32_t>(ends.size()));
+    };
+    const auto asked = connection(2);
+    Connections connections(problem_.reading->figures(), skeleton_, asked);
+    Cells cells = {};
+    connections.start(model_of(cells).first);
+    std::uint32_t refused = 0;
+    for (int step = 0; step < 200; ++step) {
+        const std::uint32_t standing = model_of(cells).second;
+        ASSERT_EQ(connections.components(0), standing) << step;
+        const std::size_t west = below(7);
+        const std::size_t east = west + 1 + below(static_cast<std::uint32_t>(8 - west));
+        std::vector<Site> part;
+        const Box box = {
+            {static_cast<std::int32_t>(west), 0, 0}, {static_cast<std::int32_t>(east), 4, 4}};
+        problem_.arrangement.for_each_vertex(box, [&](Site site) { part.push_back(site); });
+        Cells next = cells;
+        // Whose faces are both in the part.
+        for (std::size_t x = std::max<std::size_t>(west, 1); x + 1 < east; ++x) {
+            next[x] = below(2) != 0;
+        }
+        connections.enter(part);
+        const auto [model, count] = model_of(next);
+        if (step % 5 == 0) {
+            connections.take_back(model);
+            cells = next;
+            continue;
+        }
+        const bool accepted = connections.accepts(model);
+        EXPECT_EQ(accepted, count <= std::max(standing, 2U)) << step;
+        cells = accepted ? next : cells;
+        refused += accepted ? 0 : 1;
+    }
+    EXPECT_GT(refused, 0U);
 }
 
 }  // namespace
