@@ -23,6 +23,10 @@ namespace {
 constexpr std::size_t kBlockCountMax = 1'000'000;
 constexpr std::uint32_t kWholeAttempts = 8;
 
+// Of a smaller block in place of one that every attempt failed at. RandomKey::block of their
+// searches: the block's index and so many times kBlockCountMax as which of them it is.
+constexpr std::uint32_t kSmallerAttempts = 4;
+
 double changed_from(std::span<const Label> initial, std::span<const Label> labels) {
     std::size_t changed = 0;
     for (std::size_t site = 0; site < labels.size(); ++site) {
@@ -131,13 +135,14 @@ class Run {
         if (growth_) {
             growth_->start(made_.labels);
         }
+        is_in_blocks_ = blocks.has_value();
         attempts_ = blocks ? blocks->attempts : kWholeAttempts;
         // What grows, or has images, may depend on blocks far away.
         const bool is_local = growth_ == nullptr && problem_.symmetries == nullptr;
         if (!(is_local && threads > 1 ? modify_in_parallel(threads) : modify_in_order())) {
             return tl::unexpected(cancelled());
         }
-        return finish(blocks.has_value());
+        return finish();
     }
 
   private:
@@ -166,7 +171,7 @@ class Run {
             if (stop_.stop_requested()) {
                 return false;
             }
-            const GraphPart part = part_of_block(index_);
+            const GraphPart part = part_of_box(schedule_[index_]);
             const BlockResult result = modify(part, made_.labels, index_, search_);
             if (result.outcome == BlockOutcome::kStopped) {
                 return false;
@@ -181,7 +186,7 @@ class Run {
         std::vector<Label> ahead = made_.labels;
         using Search = BlockSearch<GraphPart>;
         const auto solve = [&](Search& search, std::uint32_t block) -> std::optional<Solved> {
-            const GraphPart part = part_of_block(block);
+            const GraphPart part = part_of_box(schedule_[block]);
             Solved solved = {modify(part, ahead, block, search), {}, {}};
             if (solved.result.outcome == BlockOutcome::kStopped) {
                 return std::nullopt;
@@ -236,10 +241,8 @@ class Run {
         return reaches;
     }
 
-    [[nodiscard]] GraphPart part_of_block(std::uint32_t block) const {
-        return part_of(
-            problem_.arrangement, free_vertices(schedule_[block]), problem_.symmetries.get()
-        );
+    [[nodiscard]] GraphPart part_of_box(const Box& box) const {
+        return part_of(problem_.arrangement, free_vertices(box), problem_.symmetries.get());
     }
 
     BlockResult modify(
@@ -262,7 +265,44 @@ class Run {
                 return begun;
             }
         }
-        return search.modify(part, labels, options, key, stop_);
+        BlockResult result = search.modify(part, labels, options, key, stop_);
+        if (result.outcome == BlockOutcome::kReverted && is_in_blocks_) {
+            modify_corners(labels, block, search, result);
+        }
+        return result;
+    }
+
+    // In place of a block that every attempt failed at.
+    void modify_corners(
+        std::vector<Label>& labels,
+        std::uint32_t block,
+        BlockSearch<GraphPart>& search,
+        BlockResult& result
+    ) {
+        BlockOptions options;
+        options.attempts = std::min(attempts_, kSmallerAttempts);
+        options.order = Order::kRandom;
+        auto number = block;
+        for (const Box& corner : corners_of(schedule_[block])) {
+            number += static_cast<std::uint32_t>(kBlockCountMax);
+            const GraphPart part = part_of_box(corner);
+            if (part.sites().empty()) {
+                continue;
+            }
+            if (growth_) {
+                growth_->enter(part, options);
+            }
+            const BlockResult smaller =
+                search.modify(part, labels, options, {seed_, number, 0, 0}, stop_);
+            result.backtracks += smaller.backtracks;
+            if (smaller.outcome == BlockOutcome::kAccepted) {
+                result.outcome = BlockOutcome::kAccepted;
+                result.solved_by = SolvedBy::kSmallerBlock;
+            } else if (smaller.outcome == BlockOutcome::kStopped) {
+                result.outcome = BlockOutcome::kStopped;
+                return;
+            }
+        }
     }
 
     // Those of a block that are not to stay as they are, in rising order.
@@ -296,8 +336,8 @@ class Run {
         observer_.on_block({number, total_, block, accepted, result.attempts, tally, made_.labels});
     }
 
-    Result<Synthesis> finish(bool is_in_blocks) {
-        if (!is_in_blocks && total_ > 0 && made_.stats.blocks.accepted() == 0) {
+    Result<Synthesis> finish() {
+        if (!is_in_blocks_ && total_ > 0 && made_.stats.blocks.accepted() == 0) {
             return tl::unexpected(Error{
                 ErrorCode::kGaveUp,
                 "no model was found in " + std::to_string(kWholeAttempts) +
@@ -319,6 +359,7 @@ class Run {
     BlockSearch<GraphPart> search_;
     std::unique_ptr<Growth> growth_;  // null: nothing is asked to hang together
     std::vector<Box> schedule_;
+    bool is_in_blocks_ = false;
     std::uint32_t attempts_ = 1;
     Synthesis made_;
     std::uint32_t index_ = 0;

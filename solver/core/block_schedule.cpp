@@ -67,6 +67,22 @@ Result<std::vector<Box>> schedule_blocks(
     return blocks;
 }
 
+std::vector<Box> corners_of(const Box& block) {
+    const GridSize size = block.size();
+    const std::int32_t width = (3 * size.x + 4) / 5;
+    const std::int32_t depth = (3 * size.z + 4) / 5;
+    std::vector<Box> parts;
+    for (const std::int32_t x : {block.min.x, block.max.x - width}) {
+        for (const std::int32_t z : {block.min.z, block.max.z - depth}) {
+            const Box part = {{x, block.min.y, z}, {x + width, block.max.y, z + depth}};
+            if (part != block && std::find(parts.begin(), parts.end(), part) == parts.end()) {
+                parts.push_back(part);
+            }
+        }
+    }
+    return parts;
+}
+
 bool blocks_meet(const Box& a, const Box& b, const GridSize& model, Periodic periodic) {
     return meet(a.min.x, a.max.x, b.min.x, b.max.x, periodic.x, model.x) &&
            meet(a.min.y, a.max.y, b.min.y, b.max.y, periodic.y, model.y) &&

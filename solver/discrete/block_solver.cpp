@@ -34,24 +34,6 @@ Box grown(const Box& block, const GridSize& model) {
          std::min(model.z, block.max.z + kErosion)}};
 }
 
-// The four corners of a block, seen from above, each as high and three fifths as wide and deep:
-// they overlap, so that no seam is left that nothing may cross.
-std::vector<Box> parts_of(const Box& block) {
-    const GridSize size = block.size();
-    const std::int32_t width = (3 * size.x + 4) / 5;
-    const std::int32_t depth = (3 * size.z + 4) / 5;
-    std::vector<Box> parts;
-    for (const std::int32_t x : {block.min.x, block.max.x - width}) {
-        for (const std::int32_t z : {block.min.z, block.max.z - depth}) {
-            const Box part = {{x, block.min.y, z}, {x + width, block.max.y, z + depth}};
-            if (part != block && std::find(parts.begin(), parts.end(), part) == parts.end()) {
-                parts.push_back(part);
-            }
-        }
-    }
-    return parts;
-}
-
 }  // namespace
 
 BlockSolver::BlockSolver(Preparation& preparation, std::uint64_t seed, std::stop_token stop)
@@ -133,7 +115,7 @@ bool BlockSolver::modify_parts(
 ) {
     bool any = false;
     std::uint32_t which = kFirstPart;
-    for (const Box& part : parts_of(block)) {
+    for (const Box& part : corners_of(block)) {
         const BlockResult smaller = attempt_instead(labels, part, index, which++);
         result.backtracks += smaller.backtracks;
         any = any || smaller.outcome == BlockOutcome::kAccepted;

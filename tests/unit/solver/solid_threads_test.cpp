@@ -83,6 +83,41 @@ TEST_P(SolidThreads, ChangeNothing) {
     }
 }
 
+// With one attempt each, blocks fail, and their corners are made instead.
+TEST(SolidCorners, ComeOutTheSameOnAnyNumberOfThreads) {
+    const auto reading = examples::find_solids("roller_coaster");
+    Parameters parameters;
+    parameters.size = {26, 8, 26};
+    parameters = fill_defaults(parameters, reading->example());
+    (*parameters.blocks)->attempts = 1;
+    const Problem problem = make_problem(reading, parameters).value();
+    std::uint32_t by_corners = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        Recorder alone;
+        const auto expected = synthesise(problem, parameters, seed, alone, {});
+        ASSERT_TRUE(expected);
+        const SearchTally& tally = expected->stats.blocks;
+        by_corners += tally.solved_by[static_cast<std::size_t>(SolvedBy::kSmallerBlock)];
+        Recorder recorder;
+        const auto made = synthesise(problem, parameters, seed, recorder, {}, nullptr, 3);
+        ASSERT_TRUE(made);
+        EXPECT_TRUE(made->labels == expected->labels);
+        EXPECT_TRUE(recorder.reports == alone.reports);
+        for (Site site = 0; site < made->labels.size(); ++site) {
+            for (const ArrangementEdge& edge : problem.arrangement.edges(site)) {
+                if (edge.end != kNoSite) {
+                    const Figures& figures = problem.reading->figures();
+                    ASSERT_EQ(
+                        figures.along(made->labels[site], edge.heading),
+                        figures.along(made->labels[edge.end], edge.heading ^ 1)
+                    );
+                }
+            }
+        }
+    }
+    EXPECT_GT(by_corners, 0U);
+}
+
 TEST_P(SolidThreads, GoOnFromACheckpoint) {
     Recorder alone;
     const auto expected = make(alone, 1);
