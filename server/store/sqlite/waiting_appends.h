@@ -40,7 +40,7 @@ class WaitingAppends {
 
   private:
     // The writer's queue is bounded in operations; this bounds what one of them holds.
-    static constexpr std::size_t kAppendsMax = 32;
+    static constexpr std::size_t kAppendsMax = 8;
 
     std::mutex mutex_;
     std::unordered_map<std::string, std::shared_ptr<Batch>> open_;  // by job
