@@ -22,7 +22,7 @@ namespace modelsynth::server {
 
 // Part of what a job's log and model depend on; a change of the solver or of a built-in example
 // that changes models must change it.
-inline constexpr const char* kSolverVersion = "models-8";
+inline constexpr const char* kSolverVersion = "models-9";
 
 // What the store knows of a job that was begun before: the candidates that ended, when it makes
 // several models; of the one in hand where its solving goes on from, and the blocks that were

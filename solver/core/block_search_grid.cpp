@@ -1,6 +1,6 @@
 // BlockSearch on grids, compiled once for all who use it.
 
-#include "solver/core/block_search.h"
+#include "solver/core/block_search_of_width.h"
 
 namespace modelsynth {
 

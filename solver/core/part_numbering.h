@@ -238,9 +238,4 @@ class KindNumbering {
     std::vector<std::uint16_t> kinds_of_layers_;
 };
 
-// By which a topology's labels can be numbered beside Relations.
-template <class Inner>
-using KindedRelationsOf =
-    std::conditional_t<SteppedTopology<Inner>, LayeredRelations, KindRelations>;
-
 }  // namespace modelsynth

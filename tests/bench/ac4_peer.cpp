@@ -8,6 +8,7 @@
 
 #include "tests/bench/ac4_peer.h"
 
+#include "solver/core/attempt_plan.h"
 #include "solver/core/block_search.h"
 #include "solver/core/result.h"
 #include "solver/discrete/scan_order.h"

@@ -35,7 +35,8 @@ Circuit circuit_of(const Topes& topes, std::array<std::size_t, 3> families) {
     Eigen::Matrix<double, 3, 2> basis;
     basis.col(0) = n[families[0]];
     basis.col(1) = n[families[1]];
-    const Eigen::Vector2d c = basis.colPivHouseholderQr().solve(n[families[2]]);
+    const Eigen::Vector2d c =
+        (basis.transpose() * basis).inverse() * (basis.transpose() * n[families[2]]);
     return {
         only(families[0]) | only(families[1]) | only(families[2]),
         {{families[0], std::abs(c[0])}, {families[1], std::abs(c[1])}, {families[2], 1}}};

@@ -4,6 +4,7 @@
 #include "solver/core/random.h"
 #include "solver/core/relations.h"
 #include "solver/core/sat/label_formula.h"
+#include "solver/core/sat/sat_limits.h"
 #include "solver/core/site_weights.h"
 #include "solver/core/topology.h"
 
@@ -19,12 +20,6 @@ enum class SatOutcome : std::uint8_t {
     kImpossible,  // proved
     kGaveUp,      // the formula or the proof is too large
     kStopped,     // the stop token was requested
-};
-
-// How far the back end goes. Counted, never timed, so that equal input has equal outcomes.
-struct SatLimits {
-    std::size_t literals_max = 3'000'000;  // of the formula, about 100 MB
-    std::uint32_t conflicts_max = 20'000;  // dead ends learned from, a second or two
 };
 
 struct SatResult {

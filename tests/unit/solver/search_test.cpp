@@ -2,6 +2,7 @@
 
 #include "solver/core/search.h"
 
+#include "solver/core/attempt_plan.h"
 #include "solver/core/block_search.h"
 #include "solver/core/catalog.h"
 #include "tests/support/graph.h"
