@@ -156,6 +156,7 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
     }
     Constraint constraint;
     constraint.rule = read_rule(*kind, reader, value, limits);
+    const bool is_connected = std::holds_alternative<ConnectedRule>(constraint.rule);
     if (std::holds_alternative<DimensionRule>(constraint.rule)) {
         if (const auto object = reader.required("object")) {
             constraint.objects = {object->string(limits.name_characters_max).value_or("")};
@@ -165,14 +166,17 @@ Constraint read_constraint(const Value& value, const RequestLimits& limits) {
         return constraint;  // of the whole model, whatever it is made of
     } else if (const auto objects = reader.required("objects")) {
         constraint.objects =
-            objects->strings(1, continuous::kObjectTypesMax, limits.name_characters_max)
+            objects
+                ->strings(
+                    is_connected ? 0 : 1, continuous::kObjectTypesMax, limits.name_characters_max
+                )
                 .value_or(std::vector<std::string>());
     }
     if (continuous::has_region(constraint.rule)) {
         constraint.region = read_metre_region(reader, limits);
     }
     reader.finish();
-    return constraint.objects.empty() ? nothing : constraint;
+    return constraint.objects.empty() && !is_connected ? nothing : constraint;
 }
 
 void write_symmetry(const SymmetryRule& rule, OrderedJson& written) {

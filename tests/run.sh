@@ -4,7 +4,7 @@
 #   bash tests/run.sh [--quick | --thorough]
 #
 #   --quick     the release build alone, without the sanitizers
-#   --thorough  every program under AddressSanitizer, and a server that is killed under it: an hour
+#   --thorough  every program and the server under AddressSanitizer, too: an hour
 set -uo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -101,27 +101,28 @@ build release all && {
   unit release "${programs[@]}"
   beside service release tests/layout tests/service
 }
-# Of the solver, AddressSanitizer sees what the property tests and the fuzzers reach, which is most
-# of it; indices of vectors are checked in every build (_GLIBCXX_ASSERTIONS).
-asan_programs=(property_tests fuzz_tests wire_tests store_tests jobs_tests ops_tests webhook_tests)
-asan_service=(
-  tests/service/test_{hostile_http,websocket,websocket_control,multi_stream,examples_api,tls,access}.py)
-asan_left_out=(--deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it)
-asan_targets=("${asan_programs[@]}" modelsynthd)
+# AddressSanitizer is for what reads requests and computes, ThreadSanitizer for what runs on several
+# threads, and that sees freed memory as well. Of the solver, AddressSanitizer sees what the property
+# tests and the fuzzers reach, which is most of it; indices of vectors are checked in every build
+# (_GLIBCXX_ASSERTIONS).
+asan_programs=(property_tests fuzz_tests wire_tests)
 if $thorough; then
   asan_programs=("${programs[@]}")
-  asan_service+=(tests/service/test_crash.py)
-  asan_left_out=()
-  asan_targets=("${programs[@]}" modelsynthd modelsynth)
 fi
 if ! $quick; then
-  build asan "${asan_targets[@]}"
+  # shellcheck disable=SC2046
+  build asan "${asan_programs[@]}" $($thorough && echo modelsynthd modelsynth)
   built=$?
   join
   export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=60 MODELSYNTH_SOLID_PERCENT=10
   [ $built -eq 0 ] && {
     unit asan "${asan_programs[@]}"
-    beside service asan "${asan_service[@]}" "${asan_left_out[@]}"
+    if $thorough; then
+      beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
+        tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
+        tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
+        tests/service/test_access.py
+    fi
   }
   build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
@@ -133,7 +134,8 @@ if ! $quick; then
       tests/service/test_jobs_api.py tests/service/test_waits_and_keys.py \
       tests/service/test_job_lists.py tests/service/test_websocket.py \
       tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
-      tests/service/test_submit_stream.py tests/service/test_tls.py \
+      tests/service/test_submit_stream.py tests/service/test_hostile_http.py \
+      tests/service/test_examples_api.py tests/service/test_access.py tests/service/test_tls.py \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[1]" \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[2]" \
       --deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it

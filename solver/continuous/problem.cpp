@@ -61,7 +61,8 @@ std::vector<Connection> connections_of(
 ) {
     std::vector<Connection> connections;
     for (const Constraint& constraint : *parameters.constraints) {
-        if (const auto* rule = std::get_if<ConnectedRule>(&constraint.rule)) {
+        const auto* rule = std::get_if<ConnectedRule>(&constraint.rule);
+        if (rule != nullptr && !constraint.objects.empty()) {
             const ObjectSet objects = objects_named(reading.example(), constraint.objects);
             const auto ground = reading.example().ground;
             connections.push_back(
@@ -127,19 +128,9 @@ void narrow_to_kept(
 
 // Some vertices of the kinds that most of a model has.
 GraphPart middle_of(const Arrangement& arrangement, const Symmetries* symmetries) {
-    static constexpr std::int32_t kExtent = 4;  // in cells
-    const auto range = [](std::int32_t extent) {
-        const std::int32_t length = std::min(extent, kExtent);
-        return std::pair((extent - length) / 2, (extent - length) / 2 + length);
-    };
-    const GridSize cells = arrangement.frame().cells;
-    const auto [west, east] = range(cells.x);
-    const auto [bottom, top] = range(cells.y);
-    const auto [north, south] = range(cells.z);
+    const Box box = Box::middle(arrangement.frame().cells, {4, 4, 4});
     std::vector<Site> vertices;
-    arrangement.for_each_vertex({{west, bottom, north}, {east, top, south}}, [&](Site site) {
-        vertices.push_back(site);
-    });
+    arrangement.for_each_vertex(box, [&](Site site) { vertices.push_back(site); });
     return part_of(arrangement, std::move(vertices), symmetries);
 }
 

@@ -67,6 +67,14 @@ struct Box {
 
     static constexpr Box whole(const GridSize& size) { return {{}, {size.x, size.y, size.z}}; }
 
+    // Of that size in the middle of the whole, as far as there is room.
+    static constexpr Box middle(const GridSize& whole, const GridSize& size) {
+        const GridSize cut = {
+            std::min(whole.x, size.x), std::min(whole.y, size.y), std::min(whole.z, size.z)};
+        const Cell min = {(whole.x - cut.x) / 2, (whole.y - cut.y) / 2, (whole.z - cut.z) / 2};
+        return {min, {min.x + cut.x, min.y + cut.y, min.z + cut.z}};
+    }
+
     friend bool operator==(const Box&, const Box&) = default;
 };
 

@@ -83,27 +83,17 @@ Result<std::shared_ptr<Preparation>> Preparation::make(
     return made;
 }
 
-Box Preparation::middle(const GridSize& block) const {
-    const auto range = [](std::int32_t extent, std::int32_t length) {
-        const std::int32_t cut = std::min(extent, length);
-        return std::pair((extent - cut) / 2, (extent - cut) / 2 + cut);
-    };
-    const auto [west, east] = range(problem_.size.x, block.x);
-    const auto [bottom, top] = range(problem_.size.y, block.y);
-    const auto [north, south] = range(problem_.size.z, block.z);
-    return {{west, bottom, north}, {east, top, south}};
-}
-
 bool Preparation::can_change_middle(const GridSize& block, const std::stop_token& stop) {
     auto search = take_search();
-    const bool can_change = !search->is_determined(middle(block), *plain_model_, stop);
+    const bool can_change =
+        !search->is_determined(Box::middle(problem_.size, block), *plain_model_, stop);
     give_back(std::move(search));
     return can_change;
 }
 
 Order Preparation::choose_order(const std::stop_token& stop) {
     const auto& blocks = *parameters_.blocks;
-    const Box box = middle(blocks ? blocks->layout.size : kProbeSize);
+    const Box box = Box::middle(problem_.size, blocks ? blocks->layout.size : kProbeSize);
     auto search = take_search();
     // What stands around the box is not known yet, so nothing is asked of it; what a trial leaves
     // in the box says nothing to the next one.

@@ -67,9 +67,6 @@ class Preparation {
         const std::stop_token& stop
     );
 
-    // As large as that, or as the model.
-    [[nodiscard]] Box middle(const GridSize& block) const;
-
     // Whether a block of that size, outside of which the plain model stands, has any choice.
     [[nodiscard]] bool can_change_middle(const GridSize& block, const std::stop_token& stop);
 

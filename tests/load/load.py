@@ -93,8 +93,10 @@ def idle_sockets(make, options):
             ("one of them", f"{(after - before) * 1000 / options.sockets:.1f} kB", "")]
 
 
-# Some ten milliseconds of solving, some, and of those a few.
-SMALL_JOBS = {"castle, 100x10x100": {"example": "castle", "parameters": {"size": [100, 10, 100]}},
+# A tenth of a second of solving, some ten milliseconds, some, and of those a few.
+SMALL_JOBS = {"houses, 24x8x24 m": {"solver": "continuous", "example": "houses",
+                                    "parameters": {"size": [24, 8, 24]}},
+              "castle, 100x10x100": {"example": "castle", "parameters": {"size": [100, 10, 100]}},
               "castle, 40x10x40": {"example": "castle", "parameters": {"size": [40, 10, 40]}},
               "a yard of 6 pieces, 30x6x30": {"example": YARD, "parameters": {
                   "size": [30, 6, 30], "weights": "uniform"}}}

@@ -155,6 +155,7 @@ def test_what_the_example_says_hangs_together_does_unless_it_is_told_otherwise(s
     assert pieces(None) == 1
     assert pieces([{"kind": "forbidden", "objects": ["blue"], "box": WEST}]) == 1
     assert pieces([]) > 1
+    assert pieces([{"kind": "connected", "objects": []}]) > 1
     assert 1 < pieces([{"kind": "connected", "objects": ["red"], "components": 3}]) <= 3
     uploaded = server.request("POST", "/v1/examples", BLOCKS).json()
     assert uploaded["connected"] == [["red"]]

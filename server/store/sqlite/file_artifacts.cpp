@@ -43,7 +43,7 @@ class Descriptor {
     int fd_;
 };
 
-tl::unexpected<StoreError> unavailable(const std::string& what) {
+tl::unexpected<StoreError> failed_by_system(const std::string& what) {
     return tl::unexpected(StoreError{
         StoreErrorCode::kUnavailable, what + ": " + std::strerror(errno)});
 }
@@ -91,7 +91,7 @@ class FileReader final : public ArtifactStore::Reader {
                 continue;
             }
             if (got < 0) {
-                return unavailable("an artifact cannot be read");
+                return failed_by_system("an artifact cannot be read");
             }
             if (got == 0) {
                 return tl::unexpected(StoreError{
@@ -171,7 +171,7 @@ Stored<std::unique_ptr<ArtifactStore::Pin>> FileArtifacts::put(std::string_view 
     }
     // Also when the file was there: whoever put it may be about to do this, or have failed.
     if (!sync_directories(pin->digest())) {
-        return unavailable("an artifact's directory cannot be synced");
+        return failed_by_system("an artifact's directory cannot be synced");
     }
     return pin;
 }
@@ -215,7 +215,7 @@ Stored<void> FileArtifacts::write_file(const std::string& digest, std::string_vi
         temporary = temporary_ / std::to_string(next_temporary_++);
     }
     const auto give_up = [&temporary](const std::string& what) {
-        auto error = unavailable(what);
+        auto error = failed_by_system(what);
         std::error_code ignored;
         fs::remove(temporary, ignored);
         return error;
@@ -250,7 +250,7 @@ Stored<std::unique_ptr<ArtifactStore::Reader>> FileArtifacts::open(const std::st
     }
     struct stat status = {};
     if (::fstat(file.get(), &status) != 0) {
-        return unavailable("an artifact cannot be read");
+        return failed_by_system("an artifact cannot be read");
     }
     return std::make_unique<FileReader>(
         std::move(file), static_cast<std::uint64_t>(status.st_size)

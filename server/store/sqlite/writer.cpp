@@ -1,5 +1,7 @@
 #include "server/store/sqlite/writer.h"
 
+#include "server/store/sqlite/job_rows.h"
+
 #include <pthread.h>
 
 #include <chrono>
@@ -9,10 +11,6 @@ namespace modelsynth::server {
 
 namespace {
 
-tl::unexpected<StoreError> unavailable(const std::string& why) {
-    return tl::unexpected(StoreError{StoreErrorCode::kUnavailable, why});
-}
-
 // Applies one operation, or leaves no trace of it.
 Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& operation) {
     database.prepare("SAVEPOINT operation").run();
@@ -20,7 +18,7 @@ Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& ope
     try {
         outcome = operation.apply(database);
     } catch (const SqliteError& error) {
-        outcome = unavailable(error.what());
+        outcome = failure(StoreErrorCode::kUnavailable, error.what());
     }
     if (!outcome) {
         database.prepare("ROLLBACK TO operation").run();
@@ -43,7 +41,8 @@ Writer::~Writer() { close(); }
 void Writer::post(Operation operation) {
     {
         std::unique_lock lock(mutex_);
-        room_.wait(lock, [this] { return queue_.size() < kQueueMax || closed_; });
+        const bool is_own_thread = std::this_thread::get_id() == thread_.get_id();
+        room_.wait(lock, [&] { return queue_.size() < kQueueMax || closed_ || is_own_thread; });
         if (!closed_) {
             queue_.push_back(std::move(operation));
             work_.notify_one();
@@ -109,7 +108,7 @@ void Writer::commit(std::deque<Operation>& batch) {
         } catch (const SqliteError&) {
             // There was no transaction; nothing is left to take back.
         }
-        outcomes.assign(batch.size(), unavailable(error.what()));
+        outcomes.assign(batch.size(), failure(StoreErrorCode::kUnavailable, error.what()));
     }
     if (on_commit_) {
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;

@@ -33,7 +33,8 @@ class Writer {
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    // Blocks while the queue is full. After close(), `done` is told kClosed at once.
+    // Blocks while the queue is full, but not on the writer's own thread, which alone makes room.
+    // After close(), `done` is told kClosed at once.
     void post(Operation operation);
 
     // Runs `change` and waits for its commit.

@@ -45,7 +45,8 @@ struct DimensionRule {
 };
 
 // All of the objects together hang together in so many components at most (thesis 4.6.2). What
-// touches, be it at a corner, hangs together. >= 1.
+// touches, be it at a corner, hangs together. >= 1. Of no objects it asks for nothing, and stands
+// in the place of what the example asks.
 struct ConnectedRule {
     std::uint32_t components = 1;
 

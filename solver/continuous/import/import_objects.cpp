@@ -9,7 +9,7 @@ namespace modelsynth::continuous {
 
 namespace {
 
-constexpr std::size_t kNameBytesMax = 64;
+constexpr std::size_t kObjectNameBytesMax = 64;
 
 // Programs number the names of copies.
 bool look_alike(const Material& a, const Material& b) {
@@ -49,7 +49,7 @@ Result<ObjectId> ImportObjects::number_of(std::string_view name, const Material&
         }
         return static_cast<ObjectId>(found - types_.begin() + 1);
     }
-    if (name.size() > kNameBytesMax) {
+    if (name.size() > kObjectNameBytesMax) {
         return tl::unexpected(refusal(ErrorCode::kTooLarge, name, "has too long a name"));
     }
     if (types_.size() == kObjectTypesMax) {
@@ -67,10 +67,10 @@ Result<ObjectId> ImportObjects::number_of(std::string_view name, const Material&
 }
 
 std::string shortened(std::string_view name) {
-    if (name.size() <= kNameBytesMax) {
+    if (name.size() <= kObjectNameBytesMax) {
         return std::string(name);
     }
-    std::size_t end = kNameBytesMax;
+    std::size_t end = kObjectNameBytesMax;
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) {
         --end;  // within a character
     }

@@ -7,13 +7,13 @@ namespace modelsynth::continuous {
 
 namespace {
 
-constexpr double kSamePlace = 1e-6;  // cells
+constexpr double kSameVertex = 1e-6;  // cells
 
 }  // namespace
 
 Site VertexFinder::at(const Point& place) const {
     const Arrangement::Frame& frame = arrangement_.frame();
-    const double tolerance = kSamePlace * frame.cell;
+    const double tolerance = kSameVertex * frame.cell;
     const auto cell_of = [&](double along, std::int32_t count) {
         const double cell = std::floor(along / frame.cell);
         return static_cast<std::int32_t>(std::clamp(cell, 0.0, count - 1.0));

@@ -20,7 +20,7 @@ constexpr int kPeriodMax = 4;   // steps from one point of the lattice that coun
 
 using Integers = std::array<int, 3>;
 
-Point normal_of(const Integers& numbers, const std::array<double, 3>& steps) {
+Point normal_from(const Integers& numbers, const std::array<double, 3>& steps) {
     Point normal;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         normal[static_cast<Eigen::Index>(axis)] = numbers[axis] / steps[axis];
@@ -46,7 +46,7 @@ std::optional<Integers> find_integers(
                     if (std::gcd(std::gcd(x, y), z) != 1) {
                         continue;
                     }
-                    const double angle = angle_between(normal_of(numbers, steps), normal);
+                    const double angle = angle_between(normal_from(numbers, steps), normal);
                     if (angle <= least) {
                         least = angle;
                         best = numbers;
@@ -97,7 +97,7 @@ std::optional<Nudged> nudge(
         if (!numbers) {
             return std::nullopt;
         }
-        const Point near = normal_of(*numbers, steps);
+        const Point near = normal_from(*numbers, steps);
         const double angle = angle_between(near, normal);
         lengths.push_back(near.norm());
         nudged.normals.push_back(angle <= kSame ? normal : near.normalized());
