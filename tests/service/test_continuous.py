@@ -540,7 +540,7 @@ def test_a_job_goes_on_after_a_crash(make_server):
 
 def test_the_requests_of_the_guide_are_done(server):
     requests = re.findall(r"```json\n(.*?)```", _GUIDE.read_text(), re.DOTALL)
-    assert len(requests) == 17
+    assert len(requests) == 18
     for text in requests:
         answer = server.request("POST", "/v1/jobs", text, headers={
             "Prefer": "wait=60", "Content-Type": "application/json"})

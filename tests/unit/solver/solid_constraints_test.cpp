@@ -520,6 +520,13 @@ TEST(SolidConstraintDefaults, AreTheExamplesForKindsThatAreNotSpokenOf) {
     EXPECT_EQ(count(other_connected, kConnected), 1U);
     EXPECT_EQ(count(other_connected, kDimension), example.dimensions.size());
 
+    // Of no objects: nothing has to hang together, and the rest is the example's.
+    const Constraint let_go = {ConnectedRule{}, {}};
+    const auto loose = filled({{let_go}});
+    EXPECT_EQ(count(loose, kConnected), 1U);
+    EXPECT_EQ(loose.front(), let_go);
+    EXPECT_EQ(count(loose, kDimension), example.dimensions.size());
+
     // What is filled in stays as it is.
     Parameters again;
     again.constraints = other_connected;
