@@ -41,7 +41,7 @@ Writer::~Writer() { close(); }
 void Writer::post(Operation operation) {
     {
         std::unique_lock lock(mutex_);
-        const bool is_own_thread = std::this_thread::get_id() == thread_.get_id();
+        const bool is_own_thread = std::this_thread::get_id() == own_id_;
         room_.wait(lock, [&] { return queue_.size() < kQueueMax || closed_ || is_own_thread; });
         if (!closed_) {
             queue_.push_back(std::move(operation));
@@ -66,6 +66,10 @@ void Writer::close() {
 
 void Writer::run() {
     constexpr auto kIdle = std::chrono::seconds(5);
+    {
+        const std::lock_guard lock(mutex_);
+        own_id_ = std::this_thread::get_id();
+    }
     for (;;) {
         std::deque<Operation> batch;
         {

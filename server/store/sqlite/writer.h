@@ -87,6 +87,7 @@ class Writer {
     std::condition_variable room_;
     std::deque<Operation> queue_;
     bool closed_ = false;
+    std::thread::id own_id_;  // of thread_, which changes when it is joined
     std::thread thread_;
 };
 

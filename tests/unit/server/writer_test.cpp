@@ -6,8 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <functional>
 #include <future>
+#include <thread>
+#include <utility>
 
 namespace modelsynth::server {
 
@@ -46,6 +50,33 @@ TEST(Writer, TakesWhatItsOwnThreadPostsWhileTheQueueIsFull) {
     EXPECT_TRUE(is_in_time);
     writer.close();
     EXPECT_EQ(told, kQueueMax + 1);
+}
+
+TEST(Writer, TellsEveryOperationOnceThoughItIsClosedWhileOthersPost) {
+    const TemporaryDirectory directory;
+    Writer writer(directory.database());
+    std::atomic<bool> is_closed = false;
+    std::atomic<int> posted = 0;
+    std::atomic<int> told = 0;
+    const auto post_all_the_time = [&] {
+        while (!is_closed) {
+            ++posted;
+            writer.post(telling([&](Stored<void> outcome) {
+                EXPECT_TRUE(outcome || outcome.error().code == StoreErrorCode::kClosed);
+                ++told;
+            }));
+        }
+    };
+    std::thread one(post_all_the_time);
+    std::thread other(post_all_the_time);
+    while (told == 0) {
+        std::this_thread::yield();
+    }
+    writer.close();
+    is_closed = true;
+    one.join();
+    other.join();
+    EXPECT_EQ(told, posted);
 }
 
 }  // namespace
