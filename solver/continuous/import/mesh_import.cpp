@@ -195,11 +195,25 @@ class Importer {
         attachments_.add_decoration(node, looks_so ? kEmpty : object_of(node, primitives.front()));
     }
 
+    bool has_ground_flag(std::size_t node) {
+        const Extra* extra = scene_.nodes[node].extras.find("ground");
+        if (extra == nullptr) {
+            return false;
+        }
+        if (const auto* flag = std::get_if<bool>(&extra->value)) {
+            return *flag;
+        }
+        const auto* number = std::get_if<double>(&extra->value);  // older editors' flags
+        if (number == nullptr || (*number != 0 && *number != 1)) {
+            refuse_node(node, " has a property \"ground\" that is neither true nor false");
+            return false;
+        }
+        return *number == 1;
+    }
+
     // Whether a node is no solid but stands for the ground.
     bool is_ground(std::size_t node, const std::vector<Point>& places) {
-        const Extra* extra = scene_.nodes[node].extras.find("ground");
-        const auto* flag = extra == nullptr ? nullptr : std::get_if<bool>(&extra->value);
-        const bool is_said = flag != nullptr && *flag;
+        const bool is_said = has_ground_flag(node);
         Eigen::AlignedBox3d box;
         for (const Point& place : places) {
             box.extend(place);

@@ -19,8 +19,8 @@ inline constexpr std::size_t kTrianglesMax = 100'000;
 //           of different materials must be closed by itself. They are numbered as nodes come.
 // Textures: of base colours, see glb_scene.h. How the file lays them is not read: models have them
 //           upright on every face, in their size.
-// Ground:   a flat, horizontal node at y = 0 with "ground": true in its extras, or of an object
-//           called "ground", is no solid but says that its object fills all below.
+// Ground:   a flat, horizontal node at y = 0 with "ground": true (or 1) in its extras, or of
+//           an object called "ground", is no solid but says that its object fills all below.
 // Shapes:   a node whose extras have the name of an object for "shape" is no solid but that
 //           object's shape, with "smooth" and "even" as in JSON examples.
 // Decorations: a node with the name of an object for "decorates" is no solid but a decoration of

@@ -418,6 +418,23 @@ TEST(MeshImport, AFlatNodeIsTheGround) {
     ASSERT_TRUE(example) << by_flag.faults();
     EXPECT_EQ(example->objects[*example->ground - 1U].name, "grass");
 
+    GlbBuilder by_number;  // as Blender 3.4 writes a True
+    by_number.node("meadow", {{1, quad(0)}}, R"("extras":{"ground":1,"object":"grass"})")
+        .node("house", {{0, cube}}, R"("extras":{"ground":0})");
+    example = by_number.read();
+    ASSERT_TRUE(example) << by_number.faults();
+    EXPECT_EQ(example->objects[*example->ground - 1U].name, "grass");
+    EXPECT_EQ(example->polyhedra.size(), 1U);
+
+    for (const char* other : {R"("yes")", "2", "null", "[true]"}) {
+        GlbBuilder unclear;
+        unclear.node("house", {{0, cube}}, std::string(R"("extras":{"ground":)") + other + "}");
+        EXPECT_EQ(
+            unclear.faults(),
+            "/nodes/0: node \"house\" has a property \"ground\" that is neither true nor false\n"
+        ) << other;
+    }
+
     GlbBuilder wrong;
     wrong.node("house", {{0, cube}}, R"("extras":{"ground":true})")
         .node("high", {{2, quad(1)}})
