@@ -37,17 +37,19 @@ build() {  # PRESET TARGET...
     || { tail -n 60 "$results/$preset.build.log"; return 1; }
 }
 
-run_program() {  # PRESET PROGRAM
-  local preset=$1 program=$2 code
-  "build/$preset/bin/$program" --gtest_brief=1 \
-    --gtest_output="xml:$results/$preset.$program.xml" >"$results/$preset.$program.log" 2>&1
+# A program that works for minutes is run in parts: PROGRAM.1of2 is every second of its tests.
+run_program() {  # PRESET PROGRAM[.PARTofPARTS]
+  local preset=$1 part=$2 program=${2%%.*} code index=0 parts=1
+  [ "$part" = "$program" ] || { index=${part#*.}; parts=${index#*of}; index=$((${index%of*} - 1)); }
+  GTEST_TOTAL_SHARDS=$parts GTEST_SHARD_INDEX=$index "build/$preset/bin/$program" --gtest_brief=1 \
+    --gtest_output="xml:$results/$preset.$part.xml" >"$results/$preset.$part.log" 2>&1
   code=$?
-  step "$preset $program"
-  cat "$results/$preset.$program.log"
+  step "$preset $part"
+  cat "$results/$preset.$part.log"
   # 1 is that of failed tests, which the file counts; a sanitizer's report may stand beside tests
   # that passed.
-  [ $code -le 1 ] && [ -s "$results/$preset.$program.xml" ] \
-    || broken "$preset $program: exit code $code"
+  [ $code -le 1 ] && [ -s "$results/$preset.$part.xml" ] \
+    || broken "$preset $part: exit code $code"
 }
 
 # Two at a time.
@@ -95,8 +97,8 @@ step format
 # shellcheck disable=SC2046
 must clang-format --dry-run -Werror $(git ls-files '*.h' '*.cpp')
 
-programs=(solver_tests thread_tests wire_tests cli_tests property_tests fuzz_tests golden_tests
-  store_tests jobs_tests ops_tests webhook_tests)
+programs=(solver_tests thread_tests wire_tests cli_tests fuzz_tests golden_tests store_tests
+  jobs_tests ops_tests webhook_tests property_tests.1of2 property_tests.2of2)
 build release all && {
   unit release "${programs[@]}"
   beside service release tests/layout tests/service
@@ -105,32 +107,19 @@ build release all && {
 # threads, and that sees freed memory as well. Of the solver, AddressSanitizer sees what the property
 # tests and the fuzzers reach, which is most of it; indices of vectors are checked in every build
 # (_GLIBCXX_ASSERTIONS).
-asan_programs=(property_tests fuzz_tests wire_tests)
+asan_programs=(property_tests.1of2 property_tests.2of2 fuzz_tests wire_tests)
 if $thorough; then
   asan_programs=("${programs[@]}")
 fi
 if ! $quick; then
-  # shellcheck disable=SC2046
-  build asan "${asan_programs[@]}" $($thorough && echo modelsynthd modelsynth)
-  built=$?
-  join
-  export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=60 MODELSYNTH_SOLID_PERCENT=10
-  [ $built -eq 0 ] && {
-    unit asan "${asan_programs[@]}"
-    if $thorough; then
-      beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
-        tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
-        tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
-        tests/service/test_access.py
-    fi
-  }
   build tsan thread_tests store_tests jobs_tests modelsynthd
   built=$?
   join
+  export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=60 MODELSYNTH_SOLID_PERCENT=10
   # Of determinism eight workers alone: one and two take minutes and race less.
   [ $built -eq 0 ] && {
     unit tsan thread_tests store_tests jobs_tests
-    service tsan tests/service/test_events.py tests/service/test_determinism.py \
+    beside service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py tests/service/test_waits_and_keys.py \
       tests/service/test_job_lists.py tests/service/test_websocket.py \
       tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
@@ -139,6 +128,20 @@ if ! $quick; then
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[1]" \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[2]" \
       --deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it
+  }
+  # shellcheck disable=SC2046
+  build asan $(printf '%s\n' "${asan_programs[@]%%.*}" | sort -u) \
+    $($thorough && echo modelsynthd modelsynth)
+  built=$?
+  join
+  [ $built -eq 0 ] && {
+    unit asan "${asan_programs[@]}"
+    if $thorough; then
+      service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
+        tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
+        tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
+        tests/service/test_access.py
+    fi
   }
 fi
 

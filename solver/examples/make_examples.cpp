@@ -114,7 +114,7 @@ void synthesise(
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) {
+    if (argc < 2 || argv[1][0] == '-') {
         std::fprintf(stderr, "usage: modelsynth-examples DIR [NAME [XxYxZ [SEEDS]]]\n");
         return 2;
     }
