@@ -112,14 +112,29 @@ if $thorough; then
   asan_programs=("${programs[@]}")
 fi
 if ! $quick; then
-  build tsan thread_tests store_tests jobs_tests modelsynthd
+  # shellcheck disable=SC2046
+  build asan $(printf '%s\n' "${asan_programs[@]%%.*}" | sort -u) \
+    $($thorough && echo modelsynthd modelsynth)
   built=$?
   join
   export MODELSYNTH_SANITIZED=1 MODELSYNTH_CASES=60 MODELSYNTH_SOLID_PERCENT=10
-  # Of determinism eight workers alone: one and two take minutes and race less.
+  [ $built -eq 0 ] && {
+    unit asan "${asan_programs[@]}"
+    if $thorough; then
+      beside service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
+        tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
+        tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
+        tests/service/test_access.py
+    fi
+  }
+  build tsan thread_tests store_tests jobs_tests modelsynthd
+  built=$?
+  join
+  # Of determinism eight workers alone: one and two take minutes and race less. Under this sanitizer
+  # the servers work all the time, so no build runs beside them.
   [ $built -eq 0 ] && {
     unit tsan thread_tests store_tests jobs_tests
-    beside service tsan tests/service/test_events.py tests/service/test_determinism.py \
+    service tsan tests/service/test_events.py tests/service/test_determinism.py \
       tests/service/test_jobs_api.py tests/service/test_waits_and_keys.py \
       tests/service/test_job_lists.py tests/service/test_websocket.py \
       tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
@@ -128,20 +143,6 @@ if ! $quick; then
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[1]" \
       --deselect "tests/service/test_determinism.py::test_any_number_of_workers_makes_the_same_models[2]" \
       --deselect tests/service/test_tls.py::test_the_command_line_client_speaks_it
-  }
-  # shellcheck disable=SC2046
-  build asan $(printf '%s\n' "${asan_programs[@]%%.*}" | sort -u) \
-    $($thorough && echo modelsynthd modelsynth)
-  built=$?
-  join
-  [ $built -eq 0 ] && {
-    unit asan "${asan_programs[@]}"
-    if $thorough; then
-      service asan tests/service/test_hostile_http.py tests/service/test_websocket.py \
-        tests/service/test_websocket_control.py tests/service/test_multi_stream.py \
-        tests/service/test_examples_api.py tests/service/test_crash.py tests/service/test_tls.py \
-        tests/service/test_access.py
-    fi
   }
 fi
 
