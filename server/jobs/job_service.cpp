@@ -27,6 +27,13 @@ constexpr std::uint64_t kJobCost = 1000;
 // Threads beyond the places for workers are those that may linger with jobs that were stopped.
 constexpr std::size_t kThreadsPerPlace = 4;
 
+// The calling thread, and those that it starts, leave the processor to threads that answer, which
+// need it for fractions of a millisecond. Where that is forbidden, answers wait a little longer.
+void give_way() {
+    constexpr int kNicer = 5;
+    [[maybe_unused]] const int niceness = ::nice(kNicer);
+}
+
 }  // namespace
 
 CapacityLimits capacity_of(const JobServiceConfig& config) {
@@ -65,6 +72,7 @@ JobService::JobService(
     for (std::size_t i = 0; i < kThreadsPerPlace * config_.workers; ++i) {
         workers_.emplace_back([this](const std::stop_token& stop) {
             ::pthread_setname_np(::pthread_self(), "worker");
+            give_way();
             work(stop);
         });
     }

@@ -411,6 +411,24 @@ class Watcher(threading.Thread):
         self.events = self.server.events(self.job["id"])
 
 
+def niceness_by_thread(server):
+    niceness = {}
+    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir():
+        name = (task / "comm").read_text(encoding="ascii").strip()
+        niceness.setdefault(name, set()).add(os.getpriority(os.PRIO_PROCESS, int(task.name)))
+    return niceness
+
+
+def test_workers_give_way_to_the_threads_that_answer(make_server):
+    server = make_server(workers=2)
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    # A thread has the name and niceness of the one that started it until it first runs.
+    wait_until(lambda: niceness_by_thread(server).get("worker") == {own + 5})
+    for name in ("store", "pool"):
+        wait_until(lambda name=name: niceness_by_thread(server).get(name) == {own})
+    assert niceness_by_thread(server)["modelsynthd"] == {own}
+
+
 def test_a_drain_lets_running_jobs_end_and_turns_new_ones_away(make_server):
     server = make_server("--drain-delay", 1, "--drain-timeout", 600, workers=1)
     running = server.submit(parameters=SOME_SECONDS)

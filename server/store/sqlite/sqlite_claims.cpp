@@ -196,7 +196,8 @@ void SqliteStore::append(
              for (const WaitingAppends::Append& append : batch->appends) {
                  append.done(committed.map([&append] { return append.first_seq; }));
              }
-         }}
+         },
+         Writer::Haste::kNobodyWaits}
     );
 }
 

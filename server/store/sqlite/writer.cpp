@@ -27,9 +27,14 @@ Stored<void> apply_in_savepoint(Database& database, const Writer::Operation& ope
     return outcome;
 }
 
+bool is_waited_for(const Writer::Operation& operation) {
+    return operation.haste == Writer::Haste::kSomebodyWaits;
+}
+
 }  // namespace
 
-Writer::Writer(const std::string& path) : database_(path, Database::Mode::kWriter) {
+Writer::Writer(const std::string& path, std::chrono::milliseconds gathering)
+    : database_(path, Database::Mode::kWriter), gathering_(gathering) {
     thread_ = std::thread([this] {
         ::pthread_setname_np(::pthread_self(), "store");
         run();
@@ -44,8 +49,11 @@ void Writer::post(Operation operation) {
         const bool is_own_thread = std::this_thread::get_id() == own_id_;
         room_.wait(lock, [&] { return queue_.size() < kQueueMax || closed_ || is_own_thread; });
         if (!closed_) {
+            waited_for_ += is_waited_for(operation) ? 1U : 0U;
             queue_.push_back(std::move(operation));
-            work_.notify_one();
+            if (queue_.size() == 1 || is_time_to_commit()) {
+                work_.notify_one();
+            }
             return;
         }
     }
@@ -64,6 +72,10 @@ void Writer::close() {
     }
 }
 
+bool Writer::is_time_to_commit() const {
+    return waited_for_ > 0 || queue_.size() >= kBatchMax || closed_;
+}
+
 void Writer::run() {
     constexpr auto kIdle = std::chrono::seconds(5);
     {
@@ -76,7 +88,13 @@ void Writer::run() {
             std::unique_lock lock(mutex_);
             const bool has_work =
                 work_.wait_for(lock, kIdle, [this] { return !queue_.empty() || closed_; });
+            if (has_work) {
+                work_.wait_until(lock, committed_ + gathering_, [this] {
+                    return is_time_to_commit();
+                });
+            }
             while (!queue_.empty() && batch.size() < kBatchMax) {
+                waited_for_ -= is_waited_for(queue_.front()) ? 1U : 0U;
                 batch.push_back(std::move(queue_.front()));
                 queue_.pop_front();
             }
@@ -92,6 +110,7 @@ void Writer::run() {
             database_.checkpoint(true);
         } else {
             commit(batch);
+            committed_ = Clock::now();
         }
     }
     database_.checkpoint(true);

@@ -3,6 +3,7 @@
 #include "server/store/sqlite/database.h"
 #include "server/store/types.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -20,14 +21,22 @@ namespace modelsynth::server {
 // that fails does not spoil the rest, and tells the outcome only after the commit.
 class Writer {
   public:
+    // Whether somebody waits for the commit. One that nobody waits for goes with the next that
+    // somebody does, and else with what has gathered kGathering after the commit before: a solver
+    // logs blocks faster than a disk syncs, and each sync takes processor time from the solvers.
+    enum class Haste { kSomebodyWaits, kNobodyWaits };
+
     struct Operation {
         // Changes the database. An error takes back what this operation did.
         std::function<Stored<void>(Database&)> apply;
         // Told after the commit, on the writer's thread, in order of submission.
         std::function<void(Stored<void>)> done;
+        Haste haste = Haste::kSomebodyWaits;
     };
 
-    explicit Writer(const std::string& path);
+    static constexpr std::chrono::milliseconds kGathering{20};
+
+    explicit Writer(const std::string& path, std::chrono::milliseconds gathering = kGathering);
     ~Writer();
 
     Writer(const Writer&) = delete;
@@ -72,7 +81,10 @@ class Writer {
     void close();
 
   private:
+    using Clock = std::chrono::steady_clock;
+
     void run();
+    bool is_time_to_commit() const;
     void commit(std::deque<Operation>& batch);
 
     static constexpr std::size_t kQueueMax = 4096;
@@ -86,8 +98,11 @@ class Writer {
     std::condition_variable work_;
     std::condition_variable room_;
     std::deque<Operation> queue_;
+    std::size_t waited_for_ = 0;  // of the queue's operations, how many somebody waits for
     bool closed_ = false;
-    std::thread::id own_id_;  // of thread_, which changes when it is joined
+    std::chrono::milliseconds gathering_;
+    Clock::time_point committed_;  // the last time
+    std::thread::id own_id_;       // of thread_, which changes when it is joined
     std::thread thread_;
 };
 

@@ -79,6 +79,66 @@ TEST(Writer, TellsEveryOperationOnceThoughItIsClosedWhileOthersPost) {
     EXPECT_EQ(told, posted);
 }
 
+class WriterOfALongGathering : public testing::Test {
+  protected:
+    WriterOfALongGathering() : writer_(directory_.database(), std::chrono::hours(1)) {
+        writer_.on_commit([this](double) { ++commits_; });
+    }
+
+    // Returns once `operations` were posted and one more after them, that is waited for.
+    void post_and_call(int operations) {
+        for (int i = 0; i < operations; ++i) {
+            Writer::Operation operation =
+                telling([this](Stored<void> outcome) { told_ += outcome ? 1 : 0; });
+            operation.haste = Writer::Haste::kNobodyWaits;
+            writer_.post(std::move(operation));
+            std::this_thread::yield();
+        }
+        ASSERT_TRUE(writer_.call<int>([](Database&) -> Stored<int> { return 0; }));
+    }
+
+    TemporaryDirectory directory_;
+    Writer writer_;
+    std::atomic<int> commits_ = 0;
+    std::atomic<int> told_ = 0;
+};
+
+TEST_F(WriterOfALongGathering, CommitsWhatNobodyWaitsForWithTheNextThatSomebodyDoes) {
+    constexpr int kCalls = 50;
+    constexpr int kOperations = 10;
+    post_and_call(0);
+    for (int i = 1; i <= kCalls; ++i) {
+        post_and_call(kOperations);
+        EXPECT_EQ(commits_, 1 + i);
+    }
+    writer_.close();
+    EXPECT_EQ(told_, kCalls * kOperations);
+    EXPECT_EQ(commits_, 1 + kCalls);
+}
+
+TEST_F(WriterOfALongGathering, CommitsWhatNobodyWaitsForWhenItIsClosed) {
+    post_and_call(0);
+    Writer::Operation operation =
+        telling([this](Stored<void> outcome) { told_ += outcome ? 1 : 0; });
+    operation.haste = Writer::Haste::kNobodyWaits;
+    writer_.post(std::move(operation));
+    writer_.close();
+    EXPECT_EQ(told_, 1);
+}
+
+TEST(Writer, CommitsWhatNobodyWaitsForOnceItHasGathered) {
+    const TemporaryDirectory directory;
+    Writer writer(directory.database());
+    for (int i = 0; i < 3; ++i) {
+        std::promise<Stored<void>> told;
+        Writer::Operation operation =
+            telling([&](Stored<void> outcome) { told.set_value(std::move(outcome)); });
+        operation.haste = Writer::Haste::kNobodyWaits;
+        writer.post(std::move(operation));
+        EXPECT_TRUE(told.get_future().get());
+    }
+}
+
 }  // namespace
 
 }  // namespace modelsynth::server
