@@ -24,6 +24,12 @@ Writer::Operation telling(std::function<void(Stored<void>)> done) {
     return {[](Database&) -> Stored<void> { return {}; }, std::move(done)};
 }
 
+Writer::Operation unhurried(std::function<void(Stored<void>)> done) {
+    Writer::Operation operation = telling(std::move(done));
+    operation.haste = Writer::Haste::kNobodyWaits;
+    return operation;
+}
+
 // A pin that goes with what `done` holds asks the writer to forget it.
 TEST(Writer, TakesWhatItsOwnThreadPostsWhileTheQueueIsFull) {
     const TemporaryDirectory directory;
@@ -85,22 +91,23 @@ class WriterOfALongGathering : public testing::Test {
         writer_.on_commit([this](double) { ++commits_; });
     }
 
+    void post_unhurried() {
+        writer_.post(unhurried([this](Stored<void> outcome) { told_ += outcome ? 1 : 0; }));
+    }
+
     // Returns once `operations` were posted and one more after them, that is waited for.
     void post_and_call(int operations) {
         for (int i = 0; i < operations; ++i) {
-            Writer::Operation operation =
-                telling([this](Stored<void> outcome) { told_ += outcome ? 1 : 0; });
-            operation.haste = Writer::Haste::kNobodyWaits;
-            writer_.post(std::move(operation));
+            post_unhurried();
             std::this_thread::yield();
         }
         ASSERT_TRUE(writer_.call<int>([](Database&) -> Stored<int> { return 0; }));
     }
 
-    TemporaryDirectory directory_;
-    Writer writer_;
     std::atomic<int> commits_ = 0;
     std::atomic<int> told_ = 0;
+    TemporaryDirectory directory_;
+    Writer writer_;  // last: its thread uses the others
 };
 
 TEST_F(WriterOfALongGathering, CommitsWhatNobodyWaitsForWithTheNextThatSomebodyDoes) {
@@ -118,10 +125,7 @@ TEST_F(WriterOfALongGathering, CommitsWhatNobodyWaitsForWithTheNextThatSomebodyD
 
 TEST_F(WriterOfALongGathering, CommitsWhatNobodyWaitsForWhenItIsClosed) {
     post_and_call(0);
-    Writer::Operation operation =
-        telling([this](Stored<void> outcome) { told_ += outcome ? 1 : 0; });
-    operation.haste = Writer::Haste::kNobodyWaits;
-    writer_.post(std::move(operation));
+    post_unhurried();
     writer_.close();
     EXPECT_EQ(told_, 1);
 }
@@ -131,10 +135,7 @@ TEST(Writer, CommitsWhatNobodyWaitsForOnceItHasGathered) {
     Writer writer(directory.database());
     for (int i = 0; i < 3; ++i) {
         std::promise<Stored<void>> told;
-        Writer::Operation operation =
-            telling([&](Stored<void> outcome) { told.set_value(std::move(outcome)); });
-        operation.haste = Writer::Haste::kNobodyWaits;
-        writer.post(std::move(operation));
+        writer.post(unhurried([&](Stored<void> outcome) { told.set_value(std::move(outcome)); }));
         EXPECT_TRUE(told.get_future().get());
     }
 }
